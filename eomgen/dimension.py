@@ -1,0 +1,42 @@
+"""Physical dimensions: exact exponents of kg, m, s, A and K; an angle is a plain number."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+BASE = ("kg", "m", "s", "A", "K")
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """Exponents of `BASE`, in that order."""
+
+    exponents: tuple[Fraction, ...] = (Fraction(0),) * 5
+
+    def __mul__(self, other: Dimension) -> Dimension:
+        """The dimension of a product."""
+        return Dimension(tuple(a + b for a, b in zip(self.exponents, other.exponents, strict=True)))
+
+    def __truediv__(self, other: Dimension) -> Dimension:
+        """The dimension of a quotient."""
+        return Dimension(tuple(a - b for a, b in zip(self.exponents, other.exponents, strict=True)))
+
+    def __pow__(self, power: Fraction | int) -> Dimension:
+        """The dimension of a power."""
+        return Dimension(tuple(a * Fraction(power) for a in self.exponents))
+
+    def __str__(self) -> str:
+        """SI text such as `kg m^2 s^-2`; `1` for a plain number."""
+        named = [(u, e) for u, e in zip(BASE, self.exponents, strict=True) if e]
+        return " ".join(u if e == 1 else f"{u}^{e}" for u, e in named) or "1"
+
+
+def _base(index: int) -> Dimension:
+    return Dimension(tuple(Fraction(int(i == index)) for i in range(len(BASE))))
+
+
+NONE = Dimension()
+MASS, LENGTH, TIME, CURRENT, TEMPERATURE = (_base(i) for i in range(len(BASE)))
+FORCE = MASS * LENGTH / TIME**2
+ENERGY = FORCE * LENGTH

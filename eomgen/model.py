@@ -1,0 +1,261 @@
+"""What is there: bodies, coordinates, loads, as frozen records that know no files.
+
+Formulas are small SymPy expressions over the symbols of the records below, exact (0.1 is 1/10) and
+in SI units. The time is `TIME`.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from eomgen.dimension import Dimension
+
+TIME = sp.Symbol("t", real=True)
+AXES = ("x", "y", "z")
+SPACES = {"line": 1, "plane": 2, "solid": 3}  # number of components of a vector
+
+
+@dataclass(frozen=True)
+class Description:
+    """What a person is told of a name: the author's unit and words, LaTeX where it was given."""
+
+    unit: str = ""
+    dimension: Dimension | None = None  # None: the spec states no unit for it
+    latex: str | None = None
+    about: str = ""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A constant; `value` is exact and in SI units; a derived one has a `formula` instead."""
+
+    name: str
+    symbol: sp.Symbol
+    description: Description = Description()
+    value: sp.Expr | None = None
+    formula: sp.Expr | None = None
+    positive: bool = False
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """A generalized coordinate q with the symbols of q' and q''."""
+
+    name: str
+    symbol: sp.Symbol
+    rate: sp.Symbol
+    acceleration: sp.Symbol
+    description: Description = Description()
+    role: str = "free"  # or "linked"
+    positive: bool = False
+
+
+@dataclass(frozen=True)
+class Speed:
+    """A quasi-velocity u = formula, linear in the rates; `rate` is the symbol of u'."""
+
+    name: str
+    symbol: sp.Symbol
+    rate: sp.Symbol
+    formula: sp.Expr
+    description: Description = Description()
+
+
+@dataclass(frozen=True)
+class Prescribed:
+    """A known function of time, with the symbols of its first two derivatives."""
+
+    name: str
+    symbol: sp.Symbol
+    rate: sp.Symbol
+    acceleration: sp.Symbol
+    formula: sp.Expr
+    description: Description = Description()
+
+
+@dataclass(frozen=True)
+class Input:
+    """Unknown when the equations are derived: an argument of the generated code."""
+
+    name: str
+    symbol: sp.Symbol
+    description: Description = Description()
+
+
+@dataclass(frozen=True)
+class Place:
+    """A position: sum(coefficient * named point) + components in the axes of `on`.
+
+    Without named points the components count from the origin of `on`; `on=None` is the world.
+    A body's name among the points means its mass centre.
+    """
+
+    components: tuple[sp.Expr, ...]
+    points: tuple[tuple[sp.Expr, str], ...] = ()
+    on: str | None = None
+
+
+@dataclass(frozen=True)
+class Turn:
+    """A rotation by `angle` about `axis` (3 components, any nonzero length), body-fixed."""
+
+    axis: tuple[sp.Expr, sp.Expr, sp.Expr]
+    angle: sp.Expr
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Axes of a body: `turns` from left to right after the axes of `origin.on` (or the world).
+
+    A rod's x axis points `along` its two named points instead and its origin is the first.
+    """
+
+    origin: Place
+    turns: tuple[Turn, ...] = ()
+    along: tuple[str, str] | None = None
+
+
+@dataclass(frozen=True)
+class Point:
+    """A named place."""
+
+    name: str
+    place: Place
+
+
+@dataclass(frozen=True)
+class Body:
+    """A particle (no inertia), a rigid body, or a uniform rod (`frame.along`).
+
+    inertia: about the mass centre in body axes: () for a particle or a rod, one scalar in a plane,
+    the nine entries of the symmetric tensor, row by row, in solid space.
+    """
+
+    name: str
+    mass: sp.Expr
+    frame: Frame
+    com: Place  # the mass centre
+    inertia: tuple[sp.Expr, ...] = ()
+    description: Description = Description()
+
+
+@dataclass(frozen=True)
+class Spring:
+    """Between two points (elongation = distance - free length) or along a scalar formula.
+
+    Exactly one of `stiffness`, `energy`, `law` is given; the last two are formulas in `elongation`.
+    """
+
+    name: str
+    between: tuple[str, str] | None
+    along: sp.Expr | None
+    free_length: sp.Expr
+    elongation: sp.Symbol
+    stiffness: sp.Expr | None = None
+    energy: sp.Expr | None = None
+    law: sp.Expr | None = None  # pulls when positive
+
+
+@dataclass(frozen=True)
+class Damper:
+    """As a spring, in the rate of the elongation: `damping`, or `law` in `elongation_rate`."""
+
+    name: str
+    between: tuple[str, str] | None
+    along: sp.Expr | None
+    elongation_rate: sp.Symbol
+    damping: sp.Expr | None = None
+    law: sp.Expr | None = None
+
+
+@dataclass(frozen=True)
+class Force:
+    """Acts on a point (a body's name: its mass centre); `source` takes the reaction."""
+
+    name: str
+    on: str
+    components: tuple[sp.Expr, ...]
+    source: str | None = None
+    axes: str | None = None  # a body's axes; None: the world's
+
+
+@dataclass(frozen=True)
+class Moment:
+    """Acts on a body: one scalar in a plane, three components in solid space."""
+
+    name: str
+    on: str
+    components: tuple[sp.Expr, ...]
+    source: str | None = None
+    axes: str | None = None
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Terms that the author gives as formulas, or the whole model."""
+
+    kinetic: sp.Expr = sp.S.Zero
+    potential: sp.Expr = sp.S.Zero
+    dissipation: sp.Expr = sp.S.Zero
+
+
+@dataclass(frozen=True)
+class Claim:
+    """An equation of the author, as left side minus right side, and the text it was written in."""
+
+    residual: sp.Expr
+    text: str
+
+
+@dataclass(frozen=True)
+class Expectation:
+    """The author's own claims; each is checked, none is used.
+
+    equations hold on every motion; kinetic and potential are formulas (potential up to a
+    constant); conserved have time derivative zero; equilibria are maps coordinate -> value.
+    """
+
+    dof: int | None = None
+    equations: tuple[Claim, ...] = ()
+    equilibria: tuple[Mapping[str, sp.Expr], ...] = ()
+    conserved: tuple[Claim, ...] = ()
+    kinetic: Claim | None = None
+    potential: Claim | None = None
+
+
+@dataclass(frozen=True)
+class Output:
+    """A named formula; it may hold coordinates, rates, accelerations, inputs and time."""
+
+    name: str
+    formula: sp.Expr
+    description: Description = Description()
+
+
+@dataclass(frozen=True)
+class Model:
+    """One mechanical system."""
+
+    name: str
+    title: Mapping[str, str]  # language -> text
+    space: str
+    gravity: tuple[sp.Expr, ...]
+    parameters: tuple[Parameter, ...] = ()
+    coordinates: tuple[Coordinate, ...] = ()
+    speeds: tuple[Speed, ...] = ()
+    prescribed: tuple[Prescribed, ...] = ()
+    inputs: tuple[Input, ...] = ()
+    points: tuple[Point, ...] = ()
+    bodies: tuple[Body, ...] = ()
+    springs: tuple[Spring, ...] = ()
+    dampers: tuple[Damper, ...] = ()
+    forces: tuple[Force, ...] = ()
+    moments: tuple[Moment, ...] = ()
+    energy: Energy = Energy()
+    initial: Mapping[str, sp.Expr] = field(default_factory=dict)  # "q" and "q'" -> SI value
+    range: Mapping[str, tuple[sp.Expr, sp.Expr]] = field(default_factory=dict)
+    outputs: tuple[Output, ...] = ()
+    expect: Expectation = Expectation()
+    with_units: bool = False  # the spec states units, so every formula is dimension-checked
+    digest: str = ""  # sha256 of the spec's text

@@ -1,0 +1,125 @@
+"""The waist on the way out: an ordered list of assignments with named inputs and outputs.
+
+Every target renders it, the interpreter defines what it means, and nothing behind it knows
+mechanics. Every function of a program has the arguments t, state = (coordinates, speeds), inputs
+and parameters.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import sympy as sp
+
+OPERATORS = {  # name -> number of operands
+    "add": 2, "subtract": 2, "multiply": 2, "divide": 2, "negate": 1, "power": 2,
+    "sin": 1, "cos": 1, "tan": 1, "asin": 1, "acos": 1, "atan": 1, "atan2": 2,
+    "sinh": 1, "cosh": 1, "tanh": 1, "sqrt": 1, "exp": 1, "log": 1,
+    "abs": 1, "sign": 1, "min": 2, "max": 2, "pi": 0,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Number:
+    """An exact rational constant."""
+
+    value: Fraction
+
+
+@dataclass(frozen=True)
+class Read:
+    """One component of an argument: `time` (index 0), `state`, `inputs` or `parameters`."""
+
+    argument: str
+    index: int
+
+
+@dataclass(frozen=True)
+class Value:
+    """The result of an earlier assignment."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Apply:
+    """An operator of `OPERATORS` on its operands; the exponent of `power` is any expression."""
+
+    operator: str
+    operands: tuple[Expression, ...]
+
+
+Expression = Number | Read | Value | Apply
+
+
+@dataclass(frozen=True)
+class Assign:
+    """name = expression."""
+
+    name: str
+    expression: Expression
+
+
+@dataclass(frozen=True)
+class RequirePositive:
+    """Stop with the status `singular` unless value > tolerance * scale (a pivot of L D L')."""
+
+    value: Value
+    scale: Expression
+
+
+@dataclass(frozen=True)
+class Solve:
+    """names = A^-1 b by L D L' in a loop, for systems too large to unroll; same pivot rule.
+
+    matrix: the lower triangle of A row by row, n (n + 1) / 2 entries; right: b, n entries.
+    """
+
+    names: tuple[str, ...]
+    matrix: tuple[Expression, ...]
+    right: tuple[Expression, ...]
+
+
+Statement = Assign | RequirePositive | Solve
+
+
+@dataclass(frozen=True)
+class Function:
+    """One function: statements, then its results in row-major order of `shape`."""
+
+    name: str
+    about: str
+    shape: tuple[int, ...]
+    statements: tuple[Statement, ...]
+    results: tuple[Expression, ...]
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A named scalar of the interface; `unit` is SI; `value` exact, where the spec has one."""
+
+    name: str
+    unit: str = ""
+    about: str = ""
+    value: sp.Expr | None = None
+
+
+@dataclass(frozen=True)
+class Program:
+    """What a target renders; `parameters` are the free ones, derived ones are computed inside."""
+
+    name: str
+    title: str
+    digest: str
+    version: str
+    coordinates: tuple[Variable, ...]  # value: the spec's initial value
+    speeds: tuple[Variable, ...]
+    inputs: tuple[Variable, ...]
+    parameters: tuple[Variable, ...]
+    outputs: tuple[Variable, ...]
+    functions: tuple[Function, ...]
+
+    def function(self, name: str) -> Function:
+        """The function of that name."""
+        return next(f for f in self.functions if f.name == name)
