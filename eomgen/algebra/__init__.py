@@ -1,1 +1,1 @@
-"""algebra."""
+"""Two algebras under one interface: the closed form for people, the graph for machines."""
