@@ -50,12 +50,8 @@ class ClosedForm:
         if expression.is_Symbol:
             bound = self.bindings.get(expression)
             return of_atom(self.ring, expression) if bound is None else bound
-        if expression.is_Rational:
-            return self.number(Fraction(expression.p, expression.q))
-        if expression is sp.pi:
-            return of_atom(self.ring, sp.pi)
-        if expression is sp.E:
-            return functions.kernel("exp", self.number(1))
+        if not expression.args:
+            return self._constant(expression)
         arguments = [self.of(a) for a in expression.args]
         if expression.is_Add:
             return normal.total(self.ring, arguments)
@@ -63,9 +59,17 @@ class ClosedForm:
             return reduce(normal.multiply, arguments)
         if expression.is_Pow:
             return self._power(arguments[0], expression.exp)
-        return reduce(lambda *pair: self.apply(SYMPY_FUNCTIONS[expression.func], *pair),
-                      arguments) if len(arguments) > 1 else self.apply(
-                          SYMPY_FUNCTIONS[expression.func], *arguments)
+        name = SYMPY_FUNCTIONS[expression.func]
+        if name in ("min", "max"):
+            return reduce(functions.FUNCTIONS[name], arguments)
+        return self.apply(name, *arguments)
+
+    def _constant(self, expression: sp.Expr) -> Form:
+        if expression.is_Rational:
+            return self.number(Fraction(expression.p, expression.q))
+        constants = {sp.pi: lambda: of_atom(self.ring, sp.pi)}
+        constants[sp.E] = lambda: functions.kernel("exp", self.number(1))
+        return constants[expression]()
 
     def _power(self, base: Form, exponent: sp.Expr) -> Form:
         """base^exponent: whole and half powers are looked into, others are kernels."""
@@ -74,6 +78,10 @@ class ClosedForm:
         if exponent.is_Rational and exponent.q == 2:
             return functions.sqrt(base) ** int(exponent.p)
         return self.apply("power", base, self.of(exponent))
+
+    def extended(self, bindings: Mapping[sp.Symbol, Form]) -> ClosedForm:
+        """The same ring, with more symbols bound."""
+        return ClosedForm(self.ring, {**self.bindings, **bindings})
 
     def along(self, value: Form, direction: Mapping[sp.Symbol, Form]) -> Form:
         """The sum of d value / d symbol * direction[symbol]."""
@@ -95,7 +103,7 @@ class Along:
     angle_speeds: dict[int, Form] = field(default_factory=dict)
 
     def form(self, value: Form) -> Form:
-        """d form, term by term."""
+        """D form, term by term."""
         parts = [p for key, c in value.terms.items() for p in self._term(key, c)]
         return normal.total(self.ring, parts)
 

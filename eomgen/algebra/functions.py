@@ -53,12 +53,12 @@ def _wave(angle: Form, sine: bool) -> Form:
 
 
 def sin(angle: Form) -> Form:
-    """sin(angle), exact at multiples of pi/2."""
+    """The sine, exact at multiples of pi/2."""
     return _wave(angle, True)
 
 
 def cos(angle: Form) -> Form:
-    """cos(angle), exact at multiples of pi/2."""
+    """The cosine, exact at multiples of pi/2."""
     return _wave(angle, False)
 
 
@@ -81,7 +81,7 @@ def sqrt(form: Form) -> Form:
     if not form.terms:
         return form
     content, rest = split_content(form)
-    ((monomial, _, _), c), = content.terms.items()
+    (((monomial, _, _), c),) = content.terms.items()
     if c < 0:
         c, rest = -c, -rest
     outside, inside = _root_of_number(Fraction(c))
@@ -99,7 +99,7 @@ def sqrt(form: Form) -> Form:
 def _squared_kernel(name: str, argument: Form, square: Form) -> Form:
     """A kernel whose square is known to the ring."""
     result = kernel(name, argument)
-    ((((atom, _),), _, _), _), = result.terms.items()
+    (((((atom, _),), _, _), _),) = result.terms.items()
     argument.ring.squares.setdefault(atom, square)
     return result
 
@@ -199,5 +199,5 @@ DERIVATIVES: dict[str, Callable[..., tuple[Form, ...]]] = {
 
 
 def partials(ring: Ring, what: Kernel) -> tuple[Form, ...]:
-    """d kernel / d argument for each argument."""
+    """D kernel / d argument for each argument."""
     return DERIVATIVES[what.function](of_atom(ring, what), *what.arguments)

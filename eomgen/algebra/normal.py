@@ -1,6 +1,6 @@
 """The closed form: a canonical normal form that decides whether an expression is zero.
 
-A `Form` is a sum of terms  coefficient * monomial * wave.  A monomial is a product of integer powers
+A `Form` is a sum of terms  coefficient * monomial * wave.  A monomial is a product of whole powers
 of atoms (symbols and kernels), a wave is 1, cos(a) or sin(a) with `a` a rational combination of
 angles. Products of waves become waves of sums and differences at once,
 
@@ -169,7 +169,7 @@ def number(ring: Ring, value: Number) -> Form:
 
 
 def scaled(form: Form, factor: Number) -> Form:
-    """factor * form."""
+    """Factor * form."""
     if not factor:
         return Form(form.ring, {})
     return Form(form.ring, {key: exact(c * factor) for key, c in form.terms.items()})
@@ -239,9 +239,7 @@ def reduced(form: Form) -> Form:
     parts = [Form(ring, {k: c for k, c in form.terms.items() if k not in set(heavy)})]
     for key in heavy:
         atom, exponent = next((a, e) for a, e in key[0] if e > 1 and a in ring.squares)
-        rest = tuple(
-            (a, e if a != atom else e % 2) for a, e in key[0] if a != atom or e % 2
-        )
+        rest = tuple((a, e if a != atom else e % 2) for a, e in key[0] if a != atom or e % 2)
         piece = Form(ring, {(rest, key[1], key[2]): form.terms[key]})
         parts.append(piece * ring.squares[atom] ** (exponent // 2))
     return total(ring, parts)
@@ -261,7 +259,7 @@ def split_content(form: Form) -> tuple[Form, Form]:
 
 
 def _monomial_inverse(form: Form) -> Form:
-    ((monomial, _, _), c), = form.terms.items()
+    (((monomial, _, _), c),) = form.terms.items()
     return Form(
         form.ring, {(tuple((a, -e) for a, e in monomial), (), False): exact(Fraction(1) / c)}
     )
@@ -312,7 +310,7 @@ def _clearable(ring: Ring, atom: int) -> bool:
 
 
 def cleared(form: Form, atom: int) -> Form:
-    """form * kernel^k without negative powers of that kernel."""
+    """Form * kernel^k without negative powers of that kernel."""
     ring = form.ring
     what = ring.atoms[atom]
     assert isinstance(what, Kernel)

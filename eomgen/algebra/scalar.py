@@ -41,5 +41,8 @@ class Algebra(Protocol[S]):
     def along(self, value: S, direction: Mapping[sp.Symbol, S]) -> S:
         """The directional derivative: sum of d value / d symbol * direction[symbol]."""
 
+    def extended(self, bindings: Mapping[sp.Symbol, S]) -> Algebra[S]:
+        """The same algebra with more symbols bound to values."""
+
     def is_zero(self, value: S) -> bool:
         """Whether the value is zero as it stands."""

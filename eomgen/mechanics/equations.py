@@ -20,7 +20,7 @@ class Equations(Generic[S]):
 
 
 @dataclass(frozen=True)
-class Contribution:
+class Contribution(Generic[S]):
     """One named share of a sum: the kinetic energy of `bob`, the potential energy of `spring 1`.
 
     kind: `translation`, `rotation`, `gravity`, `spring`, `damper`, `force`, `moment`, `formula`.
@@ -28,7 +28,7 @@ class Contribution:
 
     name: str
     kind: str
-    value: Form
+    value: S
 
 
 @dataclass(frozen=True)
@@ -68,10 +68,7 @@ class LagrangeRow:
 
 @dataclass(frozen=True)
 class Equation:
-    """One equation of motion, its terms by origin:
-
-    inertia + damping + elastic + gravity + other = applied.
-    """
+    """One equation of motion: inertia + damping + elastic + gravity + other = applied."""
 
     name: str  # the coordinate, or the speed
     inertia: Form  # terms with and without accelerations, from T
@@ -89,10 +86,10 @@ class Derivation:
     model: Model
     places: tuple[Place, ...]  # points that matter and mass centres, as declared
     spins: tuple[Spin, ...]
-    kinetic: tuple[Contribution, ...]
-    potential: tuple[Contribution, ...]
-    dissipation: tuple[Contribution, ...]
-    virtual_work: tuple[Contribution, ...]  # values linear in the virtual displacements
+    kinetic: tuple[Contribution[Form], ...]
+    potential: tuple[Contribution[Form], ...]
+    dissipation: tuple[Contribution[Form], ...]
+    virtual_work: tuple[Contribution[Form], ...]  # values linear in the virtual displacements
     kinetic_energy: Form
     potential_energy: Form
     dissipation_function: Form

@@ -1,0 +1,401 @@
+"""The second algebra: hash-consed nodes, each distinct value built once and folded where it arises.
+
+A node knows its operator (of `program.OPERATORS`, or one of `LEAVES`, or "system" and "solved" for
+a linear system solved in a loop) and its operands, which always have smaller ids: ascending ids are
+an order of evaluation. Nothing is ever expanded. Where folding has a choice the sign stands
+outside a product, a number stands first in a product and last in a sum.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from fractions import Fraction
+from math import isqrt
+from typing import Any
+
+from eomgen.program import OPERATORS, Read
+
+LEAVES = ("number", "read", "symbol")
+ODD = frozenset(("sin", "tan", "asin", "atan", "sinh", "tanh", "sign"))
+EVEN = frozenset(("cos", "cosh", "abs"))
+LARGEST_UNROLLED_EXPONENT = 64
+Exact = int | Fraction
+
+
+class Node:
+    """A scalar of the graph: `+ - * / **` and unary minus mix with int, Fraction and each other."""
+
+    __slots__ = ("datum", "graph", "id", "leaves", "operands", "operator")
+
+    graph: Graph
+    id: int
+    operator: str
+    operands: tuple[Node, ...]
+    datum: Any  # number: Fraction; read: program.Read; symbol: its name; solved: its row
+    leaves: int  # bit set of the leaves that the value depends on
+
+    def __add__(self, other: Node | Exact) -> Node:
+        return add(self, other if other.__class__ is Node else self.graph.number(other))  # type: ignore[arg-type]
+
+    def __sub__(self, other: Node | Exact) -> Node:
+        return subtract(self, other if other.__class__ is Node else self.graph.number(other))  # type: ignore[arg-type]
+
+    def __mul__(self, other: Node | Exact) -> Node:
+        return multiply(self, other if other.__class__ is Node else self.graph.number(other))  # type: ignore[arg-type]
+
+    def __truediv__(self, other: Node | Exact) -> Node:
+        return divide(self, other if other.__class__ is Node else self.graph.number(other))  # type: ignore[arg-type]
+
+    def __pow__(self, other: Node | Exact) -> Node:
+        return power(self, other if other.__class__ is Node else self.graph.number(other))  # type: ignore[arg-type]
+
+    def __radd__(self, other: Exact) -> Node:
+        return add(self.graph.number(other), self)
+
+    def __rsub__(self, other: Exact) -> Node:
+        return subtract(self.graph.number(other), self)
+
+    def __rmul__(self, other: Exact) -> Node:
+        return multiply(self.graph.number(other), self)
+
+    def __rtruediv__(self, other: Exact) -> Node:
+        return divide(self.graph.number(other), self)
+
+    def __rpow__(self, other: Exact) -> Node:
+        return power(self.graph.number(other), self)
+
+    def __neg__(self) -> Node:
+        return negate(self)
+
+    def __repr__(self) -> str:
+        return f"<{self.id}: {self.operator} {self.datum or [a.id for a in self.operands]}>"
+
+
+class Graph:
+    """All nodes in the order of their ids, and the one table that makes equal values one node."""
+
+    def __init__(self) -> None:
+        self.nodes: list[Node] = []
+        self._table: dict[tuple[Any, ...], Node] = {}
+        self._leaf_count = 0
+        self.zero = self.number(0)
+        self.one = self.number(1)
+
+    def number(self, value: Exact) -> Node:
+        """An exact constant."""
+        if not isinstance(value, int | Fraction):
+            raise TypeError(f"{value!r} is not an exact number")
+        key = ("number", value.numerator, value.denominator)
+        return self._table.get(key) or self._new(key, (), Fraction(value))
+
+    def read(self, argument: str, index: int) -> Node:
+        """A component of an argument of the program."""
+        key = ("read", argument, index)
+        return self._table.get(key) or self._new(key, (), Read(argument, index))
+
+    def symbol(self, name: str) -> Node:
+        """A free leaf, for derivations that are not compiled to a program."""
+        key = ("symbol", name)
+        return self._table.get(key) or self._new(key, (), name)
+
+    def make(self, operator: str, operands: tuple[Node, ...], datum: Any = None) -> Node:
+        """The node of an operator on operands of any number, without folding."""
+        key = (operator, datum, *[a.id for a in operands])
+        return self._table.get(key) or self._new(key, operands, datum)
+
+    def pi(self) -> Node:
+        """The constant pi."""
+        return self.make("pi", ())
+
+    def _new(self, key: tuple[Any, ...], operands: tuple[Node, ...], datum: Any) -> Node:
+        node = Node.__new__(Node)
+        node.graph, node.operator, node.operands, node.datum = self, key[0], operands, datum
+        node.id = len(self.nodes)
+        node.leaves = 0
+        for operand in operands:
+            node.leaves |= operand.leaves
+        if node.operator == "read" or node.operator == "symbol":
+            node.leaves = 1 << self._leaf_count
+            self._leaf_count += 1
+        self.nodes.append(node)
+        self._table[key] = node
+        return node
+
+
+def _two(operator: str, a: Node, b: Node) -> Node:
+    """The node of a binary operator: one look-up."""
+    graph = a.graph
+    key = (operator, a.id, b.id)
+    return graph._table.get(key) or graph._new(key, (a, b), None)
+
+
+def _one(operator: str, a: Node) -> Node:
+    """The node of a unary operator: one look-up."""
+    key = (operator, a.id)
+    return a.graph._table.get(key) or a.graph._new(key, (a,), None)
+
+
+def add(a: Node, b: Node) -> Node:
+    """a + b."""
+    if b.operator == "number":
+        return _shift(a, b.datum)
+    if a.operator == "number":
+        return _shift(b, a.datum)
+    if b.operator == "negate":
+        return subtract(a, b.operands[0])
+    if a.operator == "negate":
+        return subtract(b, a.operands[0])
+    if a is b or a.operator == "multiply" or b.operator == "multiply":
+        (c, x), (d, y) = _term(a), _term(b)
+        if x is y:
+            return _scale(c + d, x)
+    return _two("add", a, b) if a.id < b.id else _two("add", b, a)
+
+
+def subtract(a: Node, b: Node) -> Node:
+    """a - b."""
+    if b.operator == "number":
+        return _shift(a, -b.datum)
+    if b.operator == "negate":
+        return add(a, b.operands[0])
+    if a is b:
+        return a.graph.zero
+    if a.operator == "number":
+        return _shift(negate(b), a.datum)
+    if a.operator == "negate":
+        return negate(add(a.operands[0], b))
+    if a.operator == "multiply" or b.operator == "multiply":
+        (c, x), (d, y) = _term(a), _term(b)
+        if x is y:
+            return _scale(c - d, x)
+    return _two("subtract", a, b)
+
+
+def _term(a: Node) -> tuple[Exact, Node]:
+    """The numeric coefficient of a product, and the rest."""
+    if a.operator == "multiply" and a.operands[0].operator == "number":
+        return a.operands[0].datum, a.operands[1]
+    return 1, a
+
+
+def _shift(a: Node, c: Fraction) -> Node:
+    """a + c for a number c."""
+    number = a.graph.number
+    if not c:
+        return a
+    if a.operator == "number":
+        return number(a.datum + c)
+    if a.operator == "negate":
+        return _two("subtract", number(c), a.operands[0])
+    if a.operator in ("add", "subtract"):
+        first, second = a.operands
+        if second.operator == "number":
+            return _shift(first, c + (second.datum if a.operator == "add" else -second.datum))
+        if first.operator == "number":
+            return _shift(negate(second), first.datum + c)
+    return _two("add", a, number(c)) if c > 0 else _two("subtract", a, number(-c))
+
+
+def negate(a: Node) -> Node:
+    """-a."""
+    if a.operator == "number":
+        return a.graph.number(-a.datum)
+    if a.operator == "negate":
+        return a.operands[0]
+    if a.operator == "subtract":
+        return subtract(a.operands[1], a.operands[0])
+    return _one("negate", a)
+
+
+def multiply(a: Node, b: Node) -> Node:
+    """A product; the sign goes outside, numeric coefficients meet."""
+    if a.operator == "number":
+        return _scale(a.datum, b)
+    if b.operator == "number":
+        return _scale(b.datum, a)
+    if a.operator == "negate":
+        return negate(multiply(a.operands[0], b))
+    if b.operator == "negate":
+        return negate(multiply(a, b.operands[0]))
+    if a is b and a.operator == "sqrt":
+        return a.operands[0]
+    if a.operator == "multiply" and b.operator == "multiply":
+        (c, x), (d, y) = _term(a), _term(b)
+        if x is not a and y is not b:
+            return _scale(c * d, multiply(x, y))
+    return _two("multiply", a, b) if a.id < b.id else _two("multiply", b, a)
+
+
+def _scale(c: Exact, a: Node) -> Node:
+    """c a for a number c."""
+    graph = a.graph
+    if c == 0 or a is graph.zero:
+        return graph.zero
+    if c == 1:
+        return a
+    if a.operator == "number":
+        return graph.number(c * a.datum)
+    if a.operator == "negate":
+        return _scale(-c, a.operands[0])
+    if c < 0:
+        return negate(_scale(-c, a))
+    d, x = _term(a)
+    if x is not a:
+        return _scale(c * d, x)
+    if a.operator == "divide" and a.operands[0].operator == "number":
+        return divide(_scale(c, a.operands[0]), a.operands[1])
+    return _two("multiply", graph.number(c), a)
+
+
+def divide(a: Node, b: Node) -> Node:
+    """A quotient; the sign and the denominator's numeric coefficient go outside."""
+    if b.operator == "number":
+        return _scale(1 / b.datum, a)
+    if a is a.graph.zero:
+        return a
+    if a is b:
+        return a.graph.one
+    if b.operator == "negate":
+        return negate(divide(a, b.operands[0]))
+    if a.operator == "negate":
+        return negate(divide(a.operands[0], b))
+    d, y = _term(b)
+    if y is not b:
+        return _scale(1 / Fraction(d), divide(a, y))
+    return _two("divide", a, b)
+
+
+def power(a: Node, b: Node) -> Node:
+    """a ** b; small integers and halves become products and square roots."""
+    if b.operator != "number":
+        return a.graph.one if a is a.graph.one else _two("power", a, b)
+    exponent: Fraction = b.datum
+    if exponent < 0 and exponent.denominator <= 2:
+        return divide(a.graph.one, power(a, negate(b)))
+    if exponent > LARGEST_UNROLLED_EXPONENT and a.operator != "number":
+        return _two("power", a, b)
+    if exponent.denominator == 1:
+        return _integer_power(a, int(exponent))
+    if exponent.denominator == 2:
+        return multiply(_integer_power(a, int(exponent)), sqrt(a))
+    return a if a in (a.graph.zero, a.graph.one) and exponent > 0 else _two("power", a, b)
+
+
+def _integer_power(a: Node, exponent: int) -> Node:
+    """a ** exponent by repeated squaring, exponent >= 0."""
+    if a.operator == "number":
+        return a.graph.number(a.datum**exponent)
+    result = a.graph.one
+    while exponent:
+        if exponent & 1:
+            result = multiply(result, a)
+        exponent >>= 1
+        a = multiply(a, a) if exponent else a
+    return result
+
+
+def _root(value: Fraction) -> Fraction | None:
+    """The square root of a number, where it is rational."""
+    if value < 0:
+        return None
+    root = Fraction(isqrt(value.numerator), isqrt(value.denominator))
+    return root if root * root == value else None
+
+
+_AT_ZERO = dict.fromkeys(("sin", "tan", "asin", "atan", "sinh", "tanh"), 0) | dict.fromkeys(
+    ("cos", "cosh", "exp"), 1
+)
+_AT_NUMBER: dict[str, Callable[[Fraction], Exact | None]] = {
+    **{name: lambda x, y=y: None if x else y for name, y in _AT_ZERO.items()},  # type: ignore[misc]
+    "sqrt": _root,
+    "abs": abs,
+    "sign": lambda x: (x > 0) - (x < 0),
+    "log": lambda x: 0 if x == 1 else None,
+    "acos": lambda x: 0 if x == 1 else None,
+}
+# sin(k pi / 6), where it is rational
+_SINE_OF_SIXTHS = {0: 0, 1: 1, 3: 2, 5: 1, 6: 0, 7: -1, 9: -2, 11: -1}  # halves
+
+
+def _turn(operator: str, a: Node) -> Exact | None:
+    """sin or cos of a rational multiple of pi, where it is rational."""
+    factor, rest = _term(a)
+    sixths = 6 * Fraction(factor) + (3 if operator == "cos" else 0)
+    if rest.operator != "pi" or sixths % 12 not in _SINE_OF_SIXTHS:
+        return None
+    return Fraction(_SINE_OF_SIXTHS[int(sixths % 12)], 2)
+
+
+def _unary(operator: str) -> Callable[[Node], Node]:
+    """The constructor of a function of one operand."""
+
+    def build(a: Node) -> Node:
+        if a.operator == "number":
+            value = _AT_NUMBER[operator](a.datum)
+            if value is not None:
+                return a.graph.number(value)
+        if a.operator == "negate" and operator in ODD:
+            return negate(build(a.operands[0]))
+        if a.operator == "negate" and operator in EVEN:
+            return build(a.operands[0])
+        if operator == "sin" or operator == "cos":
+            value = _turn(operator, a)
+            if value is not None:
+                return a.graph.number(value)
+        return _one(operator, a)
+
+    build.__doc__ = f"{operator}(a)."
+    return build
+
+
+def _extreme(operator: str, pick: Callable[[Fraction, Fraction], Fraction]) -> Callable[..., Node]:
+    """The constructor of `min` or `max`."""
+
+    def build(a: Node, b: Node) -> Node:
+        if a is b:
+            return a
+        if a.operator == b.operator == "number":
+            return a.graph.number(pick(a.datum, b.datum))
+        return _two(operator, a, b) if a.id < b.id else _two(operator, b, a)
+
+    build.__doc__ = f"{operator}(a, b)."
+    return build
+
+
+def atan2(y: Node, x: Node) -> Node:
+    """The angle of the point (x, y)."""
+    if y is y.graph.zero and x.operator == "number" and x.datum > 0:
+        return y
+    return _two("atan2", y, x)
+
+
+sin, cos, tan = _unary("sin"), _unary("cos"), _unary("tan")
+asin, acos, atan = _unary("asin"), _unary("acos"), _unary("atan")
+sinh, cosh, tanh = _unary("sinh"), _unary("cosh"), _unary("tanh")
+sqrt, exp, log = _unary("sqrt"), _unary("exp"), _unary("log")
+absolute, sign = _unary("abs"), _unary("sign")
+minimum, maximum = _extreme("min", min), _extreme("max", max)
+
+BUILD: dict[str, Callable[..., Node]] = {
+    "add": add, "subtract": subtract, "multiply": multiply, "divide": divide, "negate": negate,
+    "power": power, "sin": sin, "cos": cos, "tan": tan, "asin": asin, "acos": acos, "atan": atan,
+    "atan2": atan2, "sinh": sinh, "cosh": cosh, "tanh": tanh, "sqrt": sqrt, "exp": exp,
+    "log": log, "abs": absolute, "sign": sign, "min": minimum, "max": maximum,
+}  # fmt: skip
+assert {*BUILD, "pi"} == {*OPERATORS}
+
+
+def below(nodes: Iterable[Node], stop: Callable[[Node], bool] = lambda node: False) -> list[Node]:
+    """All nodes that `nodes` are computed from, themselves included, in order of evaluation.
+
+    Operands of a node that satisfies `stop` are not entered.
+    """
+    stack = list(nodes)
+    found: dict[int, Node] = {}
+    while stack:
+        node = stack.pop()
+        if node.id not in found:
+            found[node.id] = node
+            if not stop(node):
+                stack.extend(node.operands)
+    return [found[i] for i in sorted(found)]

@@ -1,0 +1,213 @@
+"""Lagrange's equations in closed form, each partial derivative kept as a step.
+
+d/dt(dL/dq') - dL/dq + dD/dq' = Q,  L = T - V   (lecture, "Ecuaciones de Lagrange").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import sympy as sp
+
+from eomgen.algebra import normal
+from eomgen.algebra.closed import ClosedForm
+from eomgen.algebra.normal import Form
+from eomgen.mechanics import efforts, energies, quasi_velocities
+from eomgen.mechanics.equations import (
+    Contribution,
+    Derivation,
+    Equation,
+    Equations,
+    LagrangeRow,
+    Place,
+    Spin,
+    virtual_name,
+)
+from eomgen.mechanics.kinematics import Flow, Kinematics
+from eomgen.mechanics.vectors import dot
+from eomgen.model import TIME, Coordinate, Model
+
+
+def closed_kinematics(model: Model) -> Kinematics[Form]:
+    """Kinematics in closed form over q, q' and the prescribed motions as symbols of time."""
+    algebra = ClosedForm()
+    for symbol in quasi_velocities.declared(model):
+        algebra.of(symbol)  # fixes the order of the atoms
+    rates = {c.symbol: algebra.of(c.rate) for c in model.coordinates}
+    derivatives = rates | {c.rate: algebra.of(c.acceleration) for c in model.coordinates}
+    for known in model.prescribed:
+        derivatives[known.symbol] = algebra.of(known.rate)
+        derivatives[known.rate] = algebra.of(known.acceleration)
+    derivatives[TIME] = algebra.number(1)
+    return Kinematics(model, algebra, Flow(rates, derivatives))
+
+
+@dataclass(frozen=True)
+class Lagrangian:
+    """T, V, D and the nonconservative efforts of a scene, with their derivatives."""
+
+    kinematics: Kinematics[Form]
+
+    @cached_property
+    def kinetic(self) -> tuple[Contribution[Form], ...]:
+        """Shares of T."""
+        return energies.kinetic(self.kinematics)
+
+    @cached_property
+    def potential(self) -> tuple[Contribution[Form], ...]:
+        """Shares of V."""
+        return energies.potential(self.kinematics)
+
+    @cached_property
+    def dissipation(self) -> tuple[Contribution[Form], ...]:
+        """Shares of D."""
+        return energies.dissipation(self.kinematics)
+
+    @cached_property
+    def efforts(self) -> tuple[efforts.Effort[Form], ...]:
+        """What has neither potential nor dissipation function."""
+        return tuple(efforts.nonconservative(self.kinematics))
+
+    @cached_property
+    def kinetic_energy(self) -> Form:
+        """T."""
+        return self.sum(self.kinetic)
+
+    @cached_property
+    def potential_energy(self) -> Form:
+        """V."""
+        return self.sum(self.potential)
+
+    @cached_property
+    def dissipation_function(self) -> Form:
+        """D."""
+        return self.sum(self.dissipation)
+
+    def sum(self, shares: Iterable[Contribution[Form]]) -> Form:
+        """The sum of some shares."""
+        ring = self.kinematics.algebra.number(0).ring
+        return normal.total(ring, (s.value for s in shares))
+
+    def partial(self, value: Form, symbol: sp.Symbol) -> Form:
+        """D value / d symbol."""
+        return self.kinematics.algebra.along(value, {symbol: self.kinematics.algebra.number(1)})
+
+    def force(self, coordinate: Coordinate) -> Form:
+        """Q of a coordinate, by virtual work."""
+        terms = (
+            efforts.generalized_force(self.kinematics, e, coordinate.rate) for e in self.efforts
+        )
+        return normal.total(self.kinematics.algebra.number(0).ring, terms)
+
+
+def derive(model: Model) -> Derivation:
+    """The whole derivation of a model in closed form.
+
+    Raises:
+        UsageError: declared speeds are not independent.
+    """
+    lagrangian = Lagrangian(closed_kinematics(model))
+    rows = tuple(_row(lagrangian, c) for c in model.coordinates)
+    pairs = zip(model.coordinates, rows, strict=True)
+    in_rates = tuple(_equation(lagrangian, c, row) for c, row in pairs)
+    rates, equations = quasi_velocities.project(lagrangian.kinematics, in_rates)
+    return Derivation(
+        model=model,
+        places=_places(lagrangian.kinematics),
+        spins=_spins(lagrangian.kinematics),
+        kinetic=lagrangian.kinetic,
+        potential=lagrangian.potential,
+        dissipation=lagrangian.dissipation,
+        virtual_work=_virtual_work(lagrangian),
+        kinetic_energy=lagrangian.kinetic_energy,
+        potential_energy=lagrangian.potential_energy,
+        dissipation_function=lagrangian.dissipation_function,
+        rows=rows,
+        equations=equations,
+        matrix=matrix_form(lagrangian.kinematics, equations),
+        rates=rates,
+    )
+
+
+def _row(lagrangian: Lagrangian, coordinate: Coordinate) -> LagrangeRow:
+    difference = lagrangian.kinetic_energy - lagrangian.potential_energy
+    momentum = lagrangian.partial(lagrangian.kinetic_energy, coordinate.rate)
+    return LagrangeRow(
+        name=coordinate.name,
+        momentum=momentum,
+        momentum_rate=lagrangian.kinematics.rate(momentum),
+        slope=lagrangian.partial(difference, coordinate.symbol),
+        dissipation=lagrangian.partial(lagrangian.dissipation_function, coordinate.rate),
+        force=lagrangian.force(coordinate),
+    )
+
+
+def _equation(lagrangian: Lagrangian, coordinate: Coordinate, row: LagrangeRow) -> Equation:
+    """The row with its terms sorted by origin: dL/dq is dT/dq less every share of dV/dq."""
+
+    def stiffness(kind: str) -> Form:
+        shares = (s for s in lagrangian.potential if s.kind == kind)
+        return lagrangian.partial(lagrangian.sum(shares), coordinate.symbol)
+
+    elastic, gravity, other = (stiffness(kind) for kind in ("spring", "gravity", "formula"))
+    return Equation(
+        name=row.name,
+        inertia=row.momentum_rate - (row.slope + elastic + gravity + other),
+        damping=row.dissipation,
+        elastic=elastic,
+        gravity=gravity,
+        other=other,
+        applied=row.force,
+    )
+
+
+def matrix_form(kinematics: Kinematics[Form], equations: tuple[Equation, ...]) -> Equations[Form]:
+    """M, h and Q read off the equations: M is the derivative of the inertia terms by u'."""
+    model, algebra = kinematics.model, kinematics.algebra
+    unknown = [s.rate for s in model.speeds] or [c.acceleration for c in model.coordinates]
+    one = algebra.number(1)
+    matrix = tuple(
+        tuple(algebra.along(e.inertia, {symbol: one}) for symbol in unknown) for e in equations
+    )
+    accelerated = [dot(row, [algebra.of(symbol) for symbol in unknown]) for row in matrix]
+    bias = tuple(e.inertia - a for e, a in zip(equations, accelerated, strict=True))
+    forces = tuple(e.applied - e.damping - e.elastic - e.gravity - e.other for e in equations)
+    return Equations(matrix, bias, forces)
+
+
+def _places(kinematics: Kinematics[Form]) -> tuple[Place, ...]:
+    """Named points, then mass centres that are not at one of them."""
+    model = kinematics.model
+    names = [p.name for p in model.points]
+    known = {kinematics.position(name) for name in names}
+    for body in model.bodies:
+        if kinematics.position(body.name) not in known:
+            names.append(body.name)
+    return tuple(Place(n, kinematics.position(n), kinematics.velocity(n)) for n in names)
+
+
+def _spins(kinematics: Kinematics[Form]) -> tuple[Spin, ...]:
+    found = ((b.name, kinematics.spin(b)) for b in kinematics.model.bodies)
+    return tuple(Spin(name, spin.angular_velocity) for name, spin in found if spin is not None)
+
+
+def _virtual_work(lagrangian: Lagrangian) -> tuple[Contribution[Form], ...]:
+    """Force . delta r of every nonconservative effort."""
+    algebra, model = lagrangian.kinematics.algebra, lagrangian.kinematics.model
+    shares = []
+    for effort in lagrangian.efforts:
+        terms = (
+            efforts.generalized_force(lagrangian.kinematics, effort, c.rate)
+            * algebra.of(virtual_symbol(c))
+            for c in model.coordinates
+        )
+        work = normal.total(algebra.number(0).ring, terms)
+        shares.append(Contribution(effort.name, effort.kind, work))
+    return tuple(shares)
+
+
+def virtual_symbol(coordinate: Coordinate) -> sp.Symbol:
+    """The symbol of a coordinate's virtual displacement."""
+    return sp.Symbol(virtual_name(coordinate.name), real=True)

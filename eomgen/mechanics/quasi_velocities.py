@@ -1,0 +1,84 @@
+"""Equations of quasi-velocities: Lagrange's equations projected on dq'/du (Maggi)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import sympy as sp
+
+from eomgen.algebra.closed import Evaluation
+from eomgen.algebra.normal import Form
+from eomgen.algebra.scalar import Algebra
+from eomgen.mechanics import speeds
+from eomgen.mechanics.equations import Equation
+from eomgen.mechanics.kinematics import Kinematics
+from eomgen.mechanics.vectors import dot
+from eomgen.model import TIME, Coordinate, Model, Prescribed
+
+PARTS = ("inertia", "damping", "elastic", "gravity", "other", "applied")
+
+
+def project(
+    kinematics: Kinematics[Form], equations: tuple[Equation, ...]
+) -> tuple[tuple[Form, ...], tuple[Equation, ...]]:
+    """(rates over the speeds, equations of the speeds): sum of (dq'/du) * equation of q."""
+    model, algebra = kinematics.model, kinematics.algebra
+    if not model.speeds:
+        return (), equations
+    rates = speeds.rates(model, algebra)
+    substitute = _substitution(kinematics, rates)
+    in_speeds = [
+        Equation(e.name, **{part: substitute(getattr(e, part)) for part in PARTS})
+        for e in equations
+    ]
+    one = algebra.number(1)
+    result = []
+    for speed in model.speeds:
+        weights = [algebra.along(r, {speed.symbol: one}) for r in rates]
+        parts = {part: dot(weights, [getattr(e, part) for e in in_speeds]) for part in PARTS}
+        result.append(Equation(speed.name, **parts))
+    return rates, tuple(result)
+
+
+def _substitution(kinematics: Kinematics[Form], rates: tuple[Form, ...]) -> Callable[[Form], Form]:
+    """Puts q' and q'' over the speeds u and u' into a form."""
+    model, algebra = kinematics.model, kinematics.algebra
+    flow = {c.symbol: r for c, r in zip(model.coordinates, rates, strict=True)}
+    flow |= {s.symbol: algebra.of(s.rate) for s in model.speeds}
+    flow |= {
+        symbol: rate
+        for symbol, rate in kinematics.flow.derivatives.items()
+        if symbol not in flow and symbol not in {c.rate for c in model.coordinates}
+    }
+    values: dict[sp.Symbol, Form] = {s: algebra.of(s) for s in declared(model)}
+    for coordinate, rate in zip(model.coordinates, rates, strict=True):
+        values[coordinate.rate] = rate
+        values[coordinate.acceleration] = algebra.along(rate, flow)
+    return evaluator(algebra, values)
+
+
+def evaluator(algebra: Algebra[Form], values: Mapping[sp.Symbol, Form]) -> Callable[[Form], Form]:
+    """A function that puts closed forms in the place of symbols."""
+    return Evaluation(
+        values, algebra.number, lambda name, *a: closed_function(algebra, name, *a)
+    ).of
+
+
+def closed_function(algebra: Algebra[Form], name: str, *arguments: Form) -> Form:
+    """A function of the language, or pi."""
+    return algebra.apply(name, *arguments) if arguments else algebra.of(sp.pi)
+
+
+def declared(model: Model) -> list[sp.Symbol]:
+    """Every symbol of the model, in the order of declaration: what is constant comes first."""
+    moving: list[Coordinate | Prescribed] = [*model.coordinates, *model.prescribed]
+    return [
+        *(p.symbol for p in model.parameters),
+        *(i.symbol for i in model.inputs),
+        TIME,
+        *(m.symbol for m in moving),
+        *(s.symbol for s in model.speeds),
+        *(m.rate for m in moving),
+        *(s.rate for s in model.speeds),
+        *(m.acceleration for m in moving),
+    ]

@@ -1,0 +1,48 @@
+"""Rotation matrices: columns are the turned axes, in the axes before the turn."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import sympy as sp
+
+from eomgen.algebra.scalar import Algebra, S
+from eomgen.mechanics.vectors import Matrix, Vector, scale
+
+
+def unit(algebra: Algebra[S], axis: tuple[sp.Expr, ...]) -> Vector[S]:
+    """The axis divided by its length."""
+    components = [algebra.of(c) for c in axis]
+    length = sp.sqrt(sum(c**2 for c in axis))
+    return tuple(components) if length == 1 else scale(algebra.of(1 / length), components)
+
+
+def planar(algebra: Algebra[S], angle: S) -> Matrix[S]:
+    """A turn by `angle` [rad] in the plane, counted from x to y."""
+    s, c = algebra.apply("sin", angle), algebra.apply("cos", angle)
+    return ((c, -s), (s, c))
+
+
+def about(algebra: Algebra[S], axis: Vector[S], angle: S) -> Matrix[S]:
+    """R = cos(a) 1 + (1 - cos(a)) e e' + sin(a) [e x] (Rodrigues), e a unit vector (3,)."""
+    s, c = algebra.apply("sin", angle), algebra.apply("cos", angle)
+    zero = algebra.number(0)
+    tilde = (
+        (zero, -axis[2], axis[1]),
+        (axis[2], zero, -axis[0]),
+        (-axis[1], axis[0], zero),
+    )
+    return tuple(
+        tuple(
+            (c if i == j else zero) + (axis[i] * axis[j]) * (1 - c) + tilde[i][j] * s
+            for j in range(3)
+        )
+        for i in range(3)
+    )
+
+
+def identity(algebra: Algebra[S], size: int) -> Matrix[S]:
+    """The unit matrix."""
+    return tuple(
+        tuple(algebra.number(Fraction(int(i == j))) for j in range(size)) for i in range(size)
+    )

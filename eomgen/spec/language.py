@@ -1,0 +1,254 @@
+"""The language as one table: every key, what it means and what shape its value has.
+
+The reader checks keys with it and the JSON Schema is made from it.
+"""
+
+from collections.abc import Mapping as Map
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """One scalar: text, name, formula, quantity, unit, relation, boolean, integer or choice."""
+
+    kind: str
+    choices: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Items:
+    """A list; `least` and `most` bound its length, 0 for no bound."""
+
+    of: "Form"
+    least: int = 0
+    most: int = 0
+
+
+@dataclass(frozen=True)
+class Table:
+    """A map from the author's names to values."""
+
+    of: "Form"
+
+
+@dataclass(frozen=True)
+class Record:
+    """A map with fixed keys."""
+
+    keys: Map[str, "Key"]
+
+
+@dataclass(frozen=True)
+class Either:
+    """One form for each shape of node: scalar, list, map."""
+
+    forms: tuple["Form", ...]
+
+
+Form = Leaf | Items | Table | Record | Either
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key: what it means, what its value is, whether it must be there."""
+
+    about: str
+    form: Form
+    required: bool = False
+
+
+TEXT, NAME, UNIT = Leaf("text"), Leaf("name"), Leaf("unit")
+FORMULA, QUANTITY, RELATION = Leaf("formula"), Leaf("quantity"), Leaf("relation")
+BOOLEAN, INTEGER = Leaf("boolean"), Leaf("integer")
+
+VECTOR = Either((FORMULA, Items(FORMULA, least=1)))
+PAIR = Items(NAME, least=2, most=2)
+TENSOR = Either((FORMULA, Items(VECTOR, least=1)))
+TURNS = Items(Items(VECTOR, least=2, most=2), least=1)
+
+LATEX = Key("LaTeX of the symbol, instead of what its spelling gives", TEXT)
+ABOUT = Key("one line for people", TEXT)
+SI = Key("SI unit, such as m, rad, N*m", UNIT)
+POSITIVE = Key("true: it is known to be positive", BOOLEAN)
+DESCRIBED = {"unit": SI, "latex": LATEX, "about": ABOUT}
+
+
+def _described(key: str, key_about: str) -> Either:
+    record = Record({key: Key(key_about, FORMULA, required=True), **DESCRIBED})
+    return Either((FORMULA, record))
+
+
+PARAMETER = Either(
+    (
+        QUANTITY,
+        Record(
+            {
+                "value": Key("number with unit (2 kg), or a formula of parameters", QUANTITY),
+                "unit": Key("unit of the value, where the value states none", UNIT),
+                "latex": LATEX,
+                "about": ABOUT,
+                "positive": POSITIVE,
+            }
+        ),
+    )
+)
+
+COORDINATE = Either(
+    (
+        UNIT,
+        Record(
+            {
+                "role": Key("free (default) or linked", Leaf("choice", ("free", "linked"))),
+                **DESCRIBED,
+                "positive": POSITIVE,
+            }
+        ),
+    )
+)
+
+FRAME = Record(
+    {
+        "on": Key("the body that carries this frame; the world if absent", NAME),
+        "at": Key("origin, in the axes of `on`; its origin if absent", VECTOR),
+        "angle": Key("rotation in the plane", FORMULA),
+        "turn": Key("rotations, body-fixed, left to right: [[z, psi], [x, theta]]", TURNS),
+    }
+)
+
+BODY = Record(
+    {
+        "mass": Key("mass", FORMULA, required=True),
+        "at": Key("position of the mass centre", VECTOR),
+        "angle": Key("rotation in the plane", FORMULA),
+        "turn": Key("rotations, body-fixed, left to right: [[z, psi], [x, theta]]", TURNS),
+        "inertia": Key(
+            "about the mass centre, in body axes: a number in the plane; [a, b, c], "
+            "[Ixx, Iyy, Izz, Ixy, Ixz, Iyz] or three rows in solid space",
+            TENSOR,
+        ),
+        "rod": Key("a uniform rod between two points", PAIR),
+        "frame": Key("a frame on another body", FRAME),
+        "com": Key("mass centre in the axes of the frame", VECTOR),
+        "about": ABOUT,
+    }
+)
+
+BETWEEN = Key("two points or bodies", PAIR)
+ALONG = Key("the elongation as a formula in the coordinates", FORMULA)
+
+SPRING = Record(
+    {
+        "between": BETWEEN,
+        "along": ALONG,
+        "stiffness": Key("force per elongation", FORMULA),
+        "free_length": Key("length (or value of `along`) without force", FORMULA),
+        "energy": Key("potential energy as a formula of the elongation s", FORMULA),
+        "law": Key("force as a formula of the elongation s, pulling when positive", FORMULA),
+    }
+)
+
+DAMPER = Record(
+    {
+        "between": BETWEEN,
+        "along": ALONG,
+        "damping": Key("force per rate", FORMULA),
+        "law": Key("force as a formula of the rate v, against it when positive", FORMULA),
+    }
+)
+
+FORCE = Record(
+    {
+        "on": Key("point or body that the force acts on", NAME, required=True),
+        "from": Key("point or body that takes the reaction", NAME),
+        "force": Key("components", VECTOR, required=True),
+        "in": Key("world (default) or the body whose axes the components are in", NAME),
+    }
+)
+
+MOMENT = Record(
+    {
+        "on": Key("body that the moment acts on", NAME, required=True),
+        "from": Key("body that takes the reaction", NAME),
+        "moment": Key("a scalar in the plane, three components in solid space", VECTOR, True),
+        "in": Key("world (default) or the body whose axes the components are in", NAME),
+    }
+)
+
+EQUATIONS = Either((RELATION, Items(RELATION), Table(RELATION)))
+EQUILIBRIUM = Either((Table(QUANTITY), Items(Table(QUANTITY))))
+
+LANGUAGE = Record(
+    {
+        "eom": Key("version of the language", Leaf("choice", ("1",)), required=True),
+        "system": Key("title; text, or language to text", Either((TEXT, Table(TEXT))), True),
+        "space": Key(
+            "length of vectors: line 1, plane 2, solid 3",
+            Leaf("choice", ("line", "plane", "solid")),
+            required=True,
+        ),
+        "gravity": Key("acceleration vector; 0 for none", VECTOR),
+        "parameters": Key("constants", Table(PARAMETER)),
+        "coordinates": Key("generalized coordinates", Table(COORDINATE), required=True),
+        "speeds": Key(
+            "quasi-velocities, linear in the rates", Table(_described("formula", "in the rates"))
+        ),
+        "prescribed": Key(
+            "known functions of time", Table(_described("formula", "in t and parameters"))
+        ),
+        "inputs": Key(
+            "unknown when the equations are derived", Table(Either((UNIT, Record(DESCRIBED))))
+        ),
+        "points": Key(
+            "named places",
+            Table(
+                Either(
+                    (
+                        *VECTOR.forms,
+                        Record(
+                            {
+                                "on": Key("the body it is fixed to", NAME, required=True),
+                                "at": Key("in the axes of that body", VECTOR, required=True),
+                            }
+                        ),
+                    )
+                )
+            ),
+        ),
+        "bodies": Key("what has mass", Table(BODY)),
+        "springs": Key("springs", Either((Items(SPRING), Table(SPRING)))),
+        "dampers": Key("dampers", Either((Items(DAMPER), Table(DAMPER)))),
+        "forces": Key("forces", Either((Items(FORCE), Table(FORCE)))),
+        "moments": Key("moments", Either((Items(MOMENT), Table(MOMENT)))),
+        "energy": Key(
+            "extra terms, or the whole model",
+            Record(
+                {
+                    "kinetic": Key("kinetic energy", FORMULA),
+                    "potential": Key("potential energy", FORMULA),
+                    "dissipation": Key("dissipation function, half the power lost", FORMULA),
+                }
+            ),
+        ),
+        "initial": Key("initial values of coordinates and rates", Table(QUANTITY)),
+        "range": Key(
+            "the region in which the scene moves", Table(Items(QUANTITY, least=2, most=2))
+        ),
+        "outputs": Key("named formulas", Table(_described("formula", "the formula"))),
+        "expect": Key(
+            "the author's claims, checked",
+            Record(
+                {
+                    "dof": Key("degrees of freedom", INTEGER),
+                    "equations": Key("equations of motion, left = right", EQUATIONS),
+                    "equilibrium": Key("coordinates at rest", EQUILIBRIUM),
+                    "conserved": Key(
+                        "formulas that stay constant", Either((FORMULA, Items(FORMULA)))
+                    ),
+                    "kinetic": Key("kinetic energy", FORMULA),
+                    "potential": Key("potential energy, up to a constant", FORMULA),
+                }
+            ),
+        ),
+    }
+)
+

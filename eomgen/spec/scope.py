@@ -1,0 +1,149 @@
+"""What a formula may hold where it stands: one table of uses, one of names."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from eomgen import model
+from eomgen.dimension import Dimension
+from eomgen.spec.ledger import Ledger, Mistake, suggestion
+from eomgen.spec.reader import Scalar
+from eomgen.spec.syntax import Name, Relation, Tree
+
+PRIMES = ("", "'", "''")
+
+FIXED = frozenset({"parameter"})
+TIMED = FIXED | {"time", "prescribed"}
+PLACED = TIMED | {"coordinate"}
+MOVING = PLACED | {"coordinate'", "prescribed'", "prescribed''", "speed"}
+DRIVEN = MOVING | {"input"}
+EVERYTHING = DRIVEN | {"coordinate''", "speed'"}
+
+USES: dict[str, frozenset[str]] = {  # what a formula describes -> what may stand in it
+    "parameter": FIXED,
+    "prescribed motion": FIXED | {"time"},
+    "speed": MOVING - {"speed"},
+    "gravity": TIMED,
+    "position": PLACED | {"point", "body"},
+    "offset": PLACED,
+    "turn": PLACED,
+    "mass": FIXED,
+    "inertia": FIXED,
+    "stiffness": TIMED,
+    "free length": TIMED,
+    "elongation": PLACED,
+    "spring law": TIMED | {"local"},
+    "damping": DRIVEN,
+    "damper law": DRIVEN | {"local"},
+    "force": DRIVEN,
+    "moment": DRIVEN,
+    "kinetic energy": MOVING,
+    "potential energy": PLACED,
+    "dissipation": MOVING,
+    "initial value": FIXED,
+    "range": FIXED,
+    "equilibrium": FIXED | {"input"},
+    "output": EVERYTHING,
+    "claim": EVERYTHING,
+}
+
+
+@dataclass(frozen=True)
+class Known:
+    """What a name stands for: expressions of its value, rate and acceleration, as far as it has."""
+
+    kind: str
+    expressions: tuple[sp.Expr, ...]
+    dimension: Dimension | None = None
+    spot: Scalar | None = None
+
+
+@dataclass(frozen=True)
+class Local:
+    """A name of one formula only: `s` or `v`, whose dimension is that of trees to powers."""
+
+    name: str
+    symbol: sp.Symbol
+    dimension: Dimension
+    by: tuple[tuple[Tree, int], ...] = ()
+
+
+@dataclass(frozen=True)
+class Statement:
+    """tree must have dimension * product(tree_i ^ power_i); None: only its own terms agree."""
+
+    tree: Tree | Relation
+    what: str
+    dimension: Dimension | None = None
+    by: tuple[tuple[Tree, int], ...] = ()
+    local: Local | None = None
+
+
+@dataclass
+class Scene:
+    """What the formulas of one file are read against, and what is still to be checked."""
+
+    ledger: Ledger
+    space: str
+    names: dict[str, Known] = field(default_factory=dict)
+    statements: list[Statement] = field(default_factory=list)
+    units_seen: bool = False
+
+    @property
+    def size(self) -> int:
+        """The number of components of a vector."""
+        return model.SPACES[self.space]
+
+
+def resolve(name: Name, scene: Scene, use: str, local: Local | None = None) -> Known:
+    """What the name stands for; raises `Mistake` where it is unknown or out of place."""
+    if local is not None and name.name == local.name and name.order == 0:
+        return Known("local", (local.symbol,), local.dimension)
+    known = scene.names.get(name.name)
+    if known is None:
+        raise Mistake(
+            name.span,
+            "E301",
+            f"unknown name '{name.name}'",
+            suggestion(name.name, usable(scene.names, use)),
+        )
+    if name.order >= len(known.expressions):
+        raise Mistake(
+            name.span, "E302", f"'{name.span.text}': {article(known.kind)} has no such rate"
+        )
+    if known.kind + PRIMES[name.order] not in USES[use] and known.kind != "constant":
+        what = WORDS[known.kind + PRIMES[name.order]]
+        raise Mistake(
+            name.span, "E302", f"'{name.span.text}' is {what} and may not stand in {article(use)}"
+        )
+    return known
+
+
+def usable(names: Mapping[str, Known], use: str) -> list[str]:
+    """The names whose value may stand there."""
+    return [n for n, known in names.items() if known.kind in USES[use]]
+
+
+def article(noun: str) -> str:
+    """`an input`, `a force`."""
+    if noun in ("gravity", "dissipation", "damping", "stiffness", "kinetic energy", "time"):
+        return noun
+    return f"an {noun}" if noun[0] in "aeiou" else f"a {noun}"
+
+
+WORDS = {
+    "parameter": "a parameter",
+    "time": "the time",
+    "prescribed": "a prescribed motion",
+    "prescribed'": "the rate of a prescribed motion",
+    "prescribed''": "the acceleration of a prescribed motion",
+    "coordinate": "a coordinate",
+    "coordinate'": "a rate",
+    "coordinate''": "an acceleration",
+    "speed": "a speed",
+    "speed'": "the rate of a speed",
+    "input": "an input",
+    "point": "a point",
+    "body": "a body",
+}

@@ -1,0 +1,136 @@
+"""Node tree against the language table: every wrong key or shape is entered, the rest is kept."""
+
+from eomgen.spec.language import Either, Form, Items, Key, Leaf, Record, Table
+from eomgen.spec.ledger import Ledger, Mistake, Spot, shown, suggestion
+from eomgen.spec.reader import Entry, Mapping, Node, Scalar, Sequence
+
+SHAPES = {Leaf: Scalar, Items: Sequence, Table: Mapping, Record: Mapping}
+WORDS = {Leaf: "a text", Items: "a list", Table: "a map of names", Record: "a map of keys"}
+UNSUPPORTED = {  # path below the top -> code and what is meant
+    ("constraints",): ("E601", "constraints"),
+    ("initial", "guess"): ("E604", "'guess', which belongs to constraints,"),
+}
+MAY_BE_EMPTY = ("quantity", "unit")  # a parameter without value, a coordinate without unit
+
+
+def conform(node: Node, form: Form, ledger: Ledger, path: tuple[str, ...] = ()) -> Node | None:
+    """The part of the node that has the right form; None if nothing is left."""
+    match form:
+        case Either(forms):
+            return _either(node, forms, ledger, path)
+        case Leaf() if isinstance(node, Scalar):
+            return ledger.attempt(_leaf, node, form, path)
+        case Items() if isinstance(node, Sequence):
+            return _items(node, form, ledger, path)
+        case Table(inner) if isinstance(node, Mapping):
+            return _table(node, inner, ledger, path)
+        case Record(keys) if isinstance(node, Mapping):
+            return _record(node, dict(keys), ledger, path)
+    return _wrong_shape(node, (form,), ledger, path)
+
+
+def _either(
+    node: Node, forms: tuple[Form, ...], ledger: Ledger, path: tuple[str, ...]
+) -> Node | None:
+    fitting = next((f for f in forms if isinstance(node, SHAPES[type(f)])), None)
+    if fitting is None:
+        return _wrong_shape(node, forms, ledger, path)
+    return conform(node, fitting, ledger, path)
+
+
+def _wrong_shape(
+    node: Node, forms: tuple[Form, ...], ledger: Ledger, path: tuple[str, ...]
+) -> None:
+    wanted = " or ".join(dict.fromkeys(WORDS[type(f)] for f in forms))
+    found = {Scalar: "a text", Sequence: "a list", Mapping: "a map"}[type(node)]
+    if isinstance(node, Scalar) and not node.text:
+        found = "nothing"
+    ledger.note(Mistake(node, "E109", f"{_named(path)} must be {wanted}, not {found}"))
+
+
+def _leaf(node: Scalar, form: Leaf, path: tuple[str, ...]) -> Scalar:
+    """The scalar; raises `Mistake` for an empty text or a word that is not among the choices."""
+    if not node.text.strip() and form.kind not in MAY_BE_EMPTY:
+        raise Mistake(node, "E109", f"{_named(path)} has no value")
+    if form.choices and node.text not in form.choices:
+        hint = suggestion(node.text, form.choices)
+        raise Mistake(node, "E111", f"{shown(node.text)} is no value of {_named(path)}", hint)
+    if form.kind == "boolean" and node.text not in ("true", "false"):
+        raise Mistake(node, "E111", f"{_named(path)} is true or false, not {shown(node.text)}")
+    if form.kind == "integer" and not (node.text.isascii() and node.text.isdigit()):
+        raise Mistake(node, "E111", f"{_named(path)} is a whole number, not {shown(node.text)}")
+    return node
+
+
+def _items(node: Sequence, form: Items, ledger: Ledger, path: tuple[str, ...]) -> Node | None:
+    kept = tuple(conform(item, form.of, ledger, path) for item in node.items)
+    length = len(node.items)
+    if length < form.least or (form.most and length > form.most):
+        wanted = str(form.least) if form.least == form.most else f"at least {form.least}"
+        message = f"{_named(path)} has {wanted} entries, not {length}"
+        ledger.note(Mistake(node, "E109", message))
+        return None
+    whole = tuple(item for item in kept if item is not None)
+    if isinstance(form.of, Record) or len(whole) == length:
+        return Sequence(whole, node.line, node.column)
+    return None
+
+
+def _table(node: Mapping, inner: Form, ledger: Ledger, path: tuple[str, ...]) -> Mapping:
+    entries = []
+    for entry in node.entries:
+        if _refused_for_now(entry, ledger, path):
+            continue
+        value = conform(entry.value, inner, ledger, (*path, entry.key.text))
+        if value is not None:
+            entries.append(Entry(entry.key, value))
+    return Mapping(tuple(entries), node.line, node.column)
+
+
+def _record(
+    node: Mapping, keys: dict[str, Key], ledger: Ledger, path: tuple[str, ...]
+) -> Mapping | None:
+    entries = []
+    for entry in node.entries:
+        if _refused_for_now(entry, ledger, path):
+            continue
+        key = keys.get(entry.key.text)
+        if key is None:
+            message = f"unknown key {shown(entry.key.text)}" + (f" in {path[-1]}" if path else "")
+            ledger.note(Mistake(entry.key, "E104", message, suggestion(entry.key.text, keys)))
+            continue
+        value = conform(entry.value, key.form, ledger, (*path, entry.key.text))
+        if value is not None:
+            entries.append(Entry(entry.key, value))
+    _note_missing(node, keys, ledger, path)
+    whole = all(name in {e.key.text for e in entries} for name, k in keys.items() if k.required)
+    return Mapping(tuple(entries), node.line, node.column) if whole or not path else None
+
+
+def _note_missing(
+    node: Mapping, keys: dict[str, Key], ledger: Ledger, path: tuple[str, ...]
+) -> None:
+    given = {entry.key.text for entry in node.entries}
+    for name, key in keys.items():
+        if key.required and name not in given:
+            where = f" in {path[-1]}" if path else ""
+            ledger.note(Mistake(node, "E110", f"missing key '{name}'{where}", key.about))
+
+
+def _refused_for_now(entry: Entry, ledger: Ledger, path: tuple[str, ...]) -> bool:
+    found = UNSUPPORTED.get((*path, entry.key.text))
+    if found is None:
+        return False
+    code, what = found
+    hint = "use free coordinates, as many as degrees of freedom"
+    ledger.note(Mistake(entry.key, code, f"not supported yet: {what}", hint))
+    return True
+
+
+def _named(path: tuple[str, ...]) -> str:
+    return f"'{'.'.join(path)}'" if path else "a spec"
+
+
+def where(spot: Spot) -> str:
+    """`line 12`, for a second place in a message."""
+    return f"line {spot.line}"
