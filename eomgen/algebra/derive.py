@@ -67,6 +67,8 @@ def direction(graph: Graph, seeds: Mapping[Node, Node]) -> Callable[[Node], Node
     rates = dict(seeds)
     moving = 0
     for node, rate in seeds.items():
+        if node.operator == "number" and rate is not graph.zero:
+            raise ValueError(f"the number {node.datum} cannot move")
         moving |= node.leaves if rate is not graph.zero else 0
 
     def along(node: Node) -> Node:

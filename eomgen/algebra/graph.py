@@ -35,19 +35,19 @@ class Node:
     leaves: int  # bit set of the leaves that the value depends on
 
     def __add__(self, other: Node | Exact) -> Node:
-        return add(self, other if other.__class__ is Node else self.graph.number(other))  # type: ignore[arg-type]
+        return add(self, other if isinstance(other, Node) else self.graph.number(other))
 
     def __sub__(self, other: Node | Exact) -> Node:
-        return subtract(self, other if other.__class__ is Node else self.graph.number(other))  # type: ignore[arg-type]
+        return subtract(self, other if isinstance(other, Node) else self.graph.number(other))
 
     def __mul__(self, other: Node | Exact) -> Node:
-        return multiply(self, other if other.__class__ is Node else self.graph.number(other))  # type: ignore[arg-type]
+        return multiply(self, other if isinstance(other, Node) else self.graph.number(other))
 
     def __truediv__(self, other: Node | Exact) -> Node:
-        return divide(self, other if other.__class__ is Node else self.graph.number(other))  # type: ignore[arg-type]
+        return divide(self, other if isinstance(other, Node) else self.graph.number(other))
 
     def __pow__(self, other: Node | Exact) -> Node:
-        return power(self, other if other.__class__ is Node else self.graph.number(other))  # type: ignore[arg-type]
+        return power(self, other if isinstance(other, Node) else self.graph.number(other))
 
     def __radd__(self, other: Exact) -> Node:
         return add(self.graph.number(other), self)
@@ -136,7 +136,7 @@ def _one(operator: str, a: Node) -> Node:
 
 
 def add(a: Node, b: Node) -> Node:
-    """a + b."""
+    """The sum a + b."""
     if b.operator == "number":
         return _shift(a, b.datum)
     if a.operator == "number":
@@ -153,7 +153,7 @@ def add(a: Node, b: Node) -> Node:
 
 
 def subtract(a: Node, b: Node) -> Node:
-    """a - b."""
+    """The difference a - b."""
     if b.operator == "number":
         return _shift(a, -b.datum)
     if b.operator == "negate":
@@ -179,7 +179,7 @@ def _term(a: Node) -> tuple[Exact, Node]:
 
 
 def _shift(a: Node, c: Fraction) -> Node:
-    """a + c for a number c."""
+    """The sum a + c for a number c."""
     number = a.graph.number
     if not c:
         return a
@@ -219,6 +219,10 @@ def multiply(a: Node, b: Node) -> Node:
         return negate(multiply(a, b.operands[0]))
     if a is b and a.operator == "sqrt":
         return a.operands[0]
+    if a.operator == "divide" and a.operands[1] is b:
+        return a.operands[0]
+    if b.operator == "divide" and b.operands[1] is a:
+        return b.operands[0]
     if a.operator == "multiply" and b.operator == "multiply":
         (c, x), (d, y) = _term(a), _term(b)
         if x is not a and y is not b:
@@ -227,7 +231,7 @@ def multiply(a: Node, b: Node) -> Node:
 
 
 def _scale(c: Exact, a: Node) -> Node:
-    """c a for a number c."""
+    """The product c a for a number c."""
     graph = a.graph
     if c == 0 or a is graph.zero:
         return graph.zero
@@ -266,7 +270,7 @@ def divide(a: Node, b: Node) -> Node:
 
 
 def power(a: Node, b: Node) -> Node:
-    """a ** b; small integers and halves become products and square roots."""
+    """The power a ** b; small integers and halves become products and square roots."""
     if b.operator != "number":
         return a.graph.one if a is a.graph.one else _two("power", a, b)
     exponent: Fraction = b.datum
@@ -282,7 +286,7 @@ def power(a: Node, b: Node) -> Node:
 
 
 def _integer_power(a: Node, exponent: int) -> Node:
-    """a ** exponent by repeated squaring, exponent >= 0."""
+    """The power a ** exponent by repeated squaring, exponent >= 0."""
     if a.operator == "number":
         return a.graph.number(a.datum**exponent)
     result = a.graph.one
@@ -318,7 +322,7 @@ _SINE_OF_SIXTHS = {0: 0, 1: 1, 3: 2, 5: 1, 6: 0, 7: -1, 9: -2, 11: -1}  # halves
 
 
 def _turn(operator: str, a: Node) -> Exact | None:
-    """sin or cos of a rational multiple of pi, where it is rational."""
+    """The sine or cosine of a rational multiple of pi, where it is rational."""
     factor, rest = _term(a)
     sixths = 6 * Fraction(factor) + (3 if operator == "cos" else 0)
     if rest.operator != "pi" or sixths % 12 not in _SINE_OF_SIXTHS:

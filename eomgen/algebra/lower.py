@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import reduce
+from typing import Any
 
 import sympy as sp
 
@@ -10,7 +11,7 @@ from eomgen.algebra import graph as g
 from eomgen.algebra.derive import direction
 from eomgen.algebra.graph import Graph, Node
 
-FUNCTIONS: dict[type[sp.Basic], str] = {
+FUNCTIONS: dict[Any, str] = {
     sp.sin: "sin", sp.cos: "cos", sp.tan: "tan", sp.asin: "asin", sp.acos: "acos",
     sp.atan: "atan", sp.atan2: "atan2", sp.sinh: "sinh", sp.cosh: "cosh", sp.tanh: "tanh",
     sp.exp: "exp", sp.log: "log", sp.Abs: "abs", sp.sign: "sign", sp.Min: "min", sp.Max: "max",
@@ -22,7 +23,7 @@ class GraphAlgebra:
 
     def __init__(self, graph: Graph, bindings: Mapping[sp.Symbol, Node]) -> None:
         self.graph = graph
-        self.bindings = dict(bindings)
+        self.bindings: dict[sp.Symbol, Node] = dict(bindings)
         self._lowered: dict[sp.Expr, Node] = {}
         self._directions: dict[tuple[tuple[int, int], ...], Callable[[Node], Node]] = {}
 
@@ -38,7 +39,7 @@ class GraphAlgebra:
         return node
 
     def along(self, value: Node, direction: Mapping[sp.Symbol, Node]) -> Node:
-        """sum (d value / d symbol) * direction[symbol]."""
+        """The sum of d value / d symbol * direction[symbol]; symbols not bound are in no value."""
         return self._direction(direction)(value)
 
     def apply(self, name: str, *operands: Node) -> Node:
@@ -55,25 +56,23 @@ class GraphAlgebra:
 
     def _direction(self, rates: Mapping[sp.Symbol, Node]) -> Callable[[Node], Node]:
         """The derivative along `rates`; equal directions share their memory."""
-        seeds = {self._bound(symbol): rate for symbol, rate in rates.items()}
+        seeds = {self.bindings[s]: rate for s, rate in rates.items() if s in self.bindings}
         key = tuple((node.id, rate.id) for node, rate in seeds.items())
         if key not in self._directions:
             self._directions[key] = direction(self.graph, seeds)
         return self._directions[key]
 
-    def _bound(self, symbol: sp.Symbol) -> Node:
-        if symbol not in self.bindings:
-            raise KeyError(f"no node is bound to the symbol {symbol.name}")
-        return self.bindings[symbol]
-
     def _lower(self, expression: sp.Expr) -> Node:
         if expression.is_Symbol:
-            return self._bound(expression)
+            node = self.bindings.get(expression)
+            if node is None:
+                raise KeyError(f"no node is bound to the symbol {expression.name}")
+            return node
         if expression.is_Rational:
             return self.graph.number(Fraction(int(expression.p), int(expression.q)))
         operation = FUNCTIONS.get(expression.func)
         if operation is not None:
-            return reduce_operands(operation, [self.of(a) for a in expression.args])
+            return _chain(operation, [self.of(a) for a in expression.args])
         return LOWERINGS[expression.func](self, expression)
 
     def _sum(self, expression: sp.Expr) -> Node:
@@ -95,13 +94,13 @@ class GraphAlgebra:
         return g.power(self.of(expression.base), self.of(expression.exp))
 
 
-def reduce_operands(operation: str, operands: list[Node]) -> Node:
+def _chain(operation: str, operands: list[Node]) -> Node:
     """A function of its operands; `min` and `max` of many as a chain of two each."""
     build = g.BUILD[operation]
     return reduce(build, operands) if operation in ("min", "max") else build(*operands)
 
 
-LOWERINGS: dict[type[sp.Basic], Callable[[GraphAlgebra, sp.Expr], Node]] = {
+LOWERINGS: dict[Any, Callable[[GraphAlgebra, sp.Expr], Node]] = {
     sp.Add: GraphAlgebra._sum,
     sp.Mul: GraphAlgebra._product,
     sp.Pow: GraphAlgebra._power,

@@ -44,7 +44,7 @@ class Kernel:
     arguments: tuple[Form, ...]
 
 
-Atom = sp.Symbol | Kernel
+Atom = Any  # sp.Symbol, sp.pi or Kernel; SymPy has no types
 
 
 @dataclass

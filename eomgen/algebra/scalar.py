@@ -29,6 +29,10 @@ S = TypeVar("S", bound=Scalar)
 class Algebra(Protocol[S]):
     """Makes scalars and differentiates them."""
 
+    @property
+    def bindings(self) -> Mapping[sp.Symbol, S]:
+        """What symbols stand for."""
+
     def number(self, value: int | Fraction) -> S:
         """The scalar of an exact rational number."""
 

@@ -84,7 +84,7 @@ def _world_spin(kinematics: Kinematics[S], name: str) -> Vector[S]:
 
 
 def conservative(kinematics: Kinematics[S]) -> Iterator[Effort[S]]:
-    """Weights, springs and linear dampers as forces, without any potential."""
+    """What has a potential, as forces: weights, springs, the author's own V."""
     model = kinematics.model
     gravity = kinematics.vector(model.gravity)
     for body in model.bodies:
@@ -93,22 +93,24 @@ def conservative(kinematics: Kinematics[S]) -> Iterator[Effort[S]]:
     for spring in model.springs:
         if has_potential(spring):
             yield _spring(kinematics, spring)
+    if model.energy.potential != 0:
+        slopes = (sp.diff(-model.energy.potential, c.symbol) for c in model.coordinates)
+        yield Effort("V", "formula", kinematics.vector(tuple(slopes)), _rates(kinematics))
+
+
+def _rates(kinematics: Kinematics[S]) -> Vector[S]:
+    return tuple(kinematics.flow.rates[c.symbol] for c in kinematics.model.coordinates)
+
+
+def dissipative(kinematics: Kinematics[S]) -> Iterator[Effort[S]]:
+    """What has a dissipation function, as forces: linear dampers, the author's own D."""
+    model = kinematics.model
     for damper in model.dampers:
         if damper.damping is not None:
             yield _damper(kinematics, damper)
-    yield from given(kinematics)
-
-
-def given(kinematics: Kinematics[S]) -> Iterator[Effort[S]]:
-    """-dV/dq and -dD/dq' of the author's own terms, working on the rates q'."""
-    energy, coordinates = kinematics.model.energy, kinematics.model.coordinates
-    rates = tuple(kinematics.flow.rates[c.symbol] for c in coordinates)
-    if energy.potential != 0:
-        slopes = tuple(sp.diff(-energy.potential, c.symbol) for c in coordinates)
-        yield Effort("V", "formula", kinematics.vector(slopes), rates)
-    if energy.dissipation != 0:
-        slopes = tuple(sp.diff(-energy.dissipation, c.rate) for c in coordinates)
-        yield Effort("D", "formula", kinematics.vector(slopes), rates)
+    if model.energy.dissipation != 0:
+        slopes = (sp.diff(-model.energy.dissipation, c.rate) for c in model.coordinates)
+        yield Effort("D", "formula", kinematics.vector(tuple(slopes)), _rates(kinematics))
 
 
 def _spring(kinematics: Kinematics[S], spring: Spring) -> Effort[S]:

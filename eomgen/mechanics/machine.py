@@ -49,12 +49,12 @@ def _arguments(model: Model, graph: Graph) -> dict[sp.Symbol, Node]:
 
 def _bind_derived(model: Model, graph: Graph, bindings: dict[sp.Symbol, Node]) -> None:
     """Derived parameters by their formulas, in an order that has the names of each known."""
-    waiting = [p for p in model.parameters if p.formula is not None]
+    waiting = {p.symbol: p.formula for p in model.parameters if p.formula is not None}
     while waiting:
-        ready = [p for p in waiting if p.formula.free_symbols <= bindings.keys()]
-        for parameter in ready:
-            bindings[parameter.symbol] = GraphAlgebra(graph, bindings).of(parameter.formula)
-        waiting = [p for p in waiting if p not in ready]
+        ready = {s: f for s, f in waiting.items() if f.free_symbols <= bindings.keys()}
+        for symbol, formula in ready.items():
+            bindings[symbol] = GraphAlgebra(graph, bindings).of(formula)
+            del waiting[symbol]
         assert ready, "the spec reader refuses parameters that depend on each other in a circle"
 
 

@@ -84,9 +84,25 @@ def _angular(kinematics: Kinematics[S], spin: Spin[S], unknown: Sequence[sp.Symb
     return Momentum(partials, tuple(transform(spin.inertia, p) for p in partials), still)
 
 
+def _given(kinematics: Kinematics[S], unknown: Sequence[sp.Symbol]) -> Momentum[S]:
+    """The author's own T(q, q', t): p = dT/dq' works on q', its rate less dT/dq is inertia."""
+    coordinates, kinetic = kinematics.model.coordinates, kinematics.model.energy.kinetic
+    rates = tuple(kinematics.flow.rates[c.symbol] for c in coordinates)
+    momenta = kinematics.vector(tuple(sp.diff(kinetic, c.rate) for c in coordinates))
+    slopes = kinematics.vector(tuple(sp.diff(kinetic, c.symbol) for c in coordinates))
+    still = tuple(kinematics.rate(p) - slope for p, slope in zip(momenta, slopes, strict=True))
+    return Momentum(
+        _partials(kinematics, rates, unknown), _partials(kinematics, momenta, unknown), still
+    )
+
+
 def generalized_forces(kinematics: Kinematics[S], unknown: Sequence[sp.Symbol]) -> tuple[S, ...]:
     """Q for every speed: weights, springs, dampers, forces and moments by their virtual work."""
-    everything = [*efforts.conservative(kinematics), *efforts.nonconservative(kinematics)]
+    everything = [
+        *efforts.conservative(kinematics),
+        *efforts.dissipative(kinematics),
+        *efforts.nonconservative(kinematics),
+    ]
     zero = kinematics.algebra.number(0)
     result = []
     for symbol in unknown:

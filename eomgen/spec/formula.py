@@ -1,10 +1,10 @@
 """Formula text -> syntax tree, by recursive descent; nothing is evaluated here.
 
-    sum     := [+|-] product {(+|-) product}
-    product := factor {(*|/) factor}
-    factor  := (+|-) factor | power
-    power   := atom [(^|**) factor]                      right-associative, -x^2 = -(x^2)
-    atom    := number | name | function(sum, ...) | der(name) | (sum) | [sum, ...]
+sum     := [+|-] product {(+|-) product}
+product := factor {(*|/) factor}
+factor  := (+|-) factor | power
+power   := atom [(^|**) factor]                      right-associative, -x^2 = -(x^2)
+atom    := number | name | function(sum, ...) | der(name) | (sum) | [sum, ...]
 """
 
 import re

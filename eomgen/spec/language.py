@@ -251,4 +251,3 @@ LANGUAGE = Record(
         ),
     }
 )
-

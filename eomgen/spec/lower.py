@@ -156,9 +156,7 @@ def _lone_scalar(tree: Tree, where: Lowering) -> Affine:
     return Affine((value,) * where.scene.size)
 
 
-def _scaled_vector(
-    tree: Product, factors: tuple[tuple[int, Tree], ...], where: Lowering
-) -> Affine:
+def _scaled_vector(tree: Product, factors: tuple[tuple[int, Tree], ...], where: Lowering) -> Affine:
     vectors = [(side, factor) for side, factor in factors if is_vector(factor, where)]
     if len(vectors) != 1 or vectors[0][0] < 0:
         message = "a product holds one vector at most, and none is divided by"

@@ -27,6 +27,8 @@ USES: dict[str, frozenset[str]] = {  # what a formula describes -> what may stan
     "gravity": TIMED,
     "position": PLACED | {"point", "body"},
     "offset": PLACED,
+    "mass centre": FIXED,
+    "axis": FIXED,
     "turn": PLACED,
     "mass": FIXED,
     "inertia": FIXED,
@@ -70,14 +72,25 @@ class Local:
 
 
 @dataclass(frozen=True)
-class Statement:
-    """tree must have dimension * product(tree_i ^ power_i); None: only its own terms agree."""
+class Wanted:
+    """What a formula is for: `what` names it, `use` says what may stand in it.
 
-    tree: Tree | Relation
+    Its dimension must be `dimension` * product(tree_i ^ power_i); None: only its terms must agree.
+    """
+
+    use: str
     what: str
     dimension: Dimension | None = None
     by: tuple[tuple[Tree, int], ...] = ()
     local: Local | None = None
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A formula whose dimensions are to be checked."""
+
+    tree: Tree | Relation
+    wanted: Wanted
 
 
 @dataclass
@@ -88,6 +101,7 @@ class Scene:
     space: str
     names: dict[str, Known] = field(default_factory=dict)
     statements: list[Statement] = field(default_factory=list)
+    values: dict[str, Known] = field(default_factory=dict)  # of the parameters that have one
     units_seen: bool = False
 
     @property

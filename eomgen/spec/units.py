@@ -112,7 +112,11 @@ PLAIN = {
 }
 
 UNITS = {
-    **{p + n: Unit(Fraction(10) ** e, NONE) * u for p, e in PREFIXES.items() for n, u in PREFIXED.items()},
+    **{
+        p + n: Unit(Fraction(10) ** e, NONE) * u
+        for p, e in PREFIXES.items()
+        for n, u in PREFIXED.items()
+    },
     **PREFIXED,
     **PLAIN,
 }
@@ -132,7 +136,9 @@ QUANTITY = re.compile(
     rf"\s*(?P<value>[+-]?(?:{NUMBER.pattern})(?:/\d+)?)(?P<unit>\s*[A-Za-z\u00b0\u00b5\u03bc\u03a9%].*)?\s*",
     re.ASCII | re.DOTALL,
 )
-TOKEN = re.compile(r"\s*(?:(?P<name>[A-Za-z\u00b0\u00b5\u03bc\u03a9%]+)|(?P<mark>\*\*|[*/^()\u00b7])|(?P<one>1)(?!\d))")
+TOKEN = re.compile(
+    r"\s*(?:(?P<name>[A-Za-z\u00b0\u00b5\u03bc\u03a9%]+)|(?P<mark>\*\*|[*/^()\u00b7])|(?P<one>1)(?!\d))"
+)
 EXPONENT = re.compile(r"\s*([+-]?\d{1,3})(?!\d)|\s*\(\s*([+-]?\d{1,3})\s*\)", re.ASCII)
 
 

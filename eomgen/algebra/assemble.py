@@ -1,0 +1,142 @@
+"""Graph nodes as a function of a program: named where used twice, inlined where used once."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from math import prod
+
+from eomgen.algebra.graph import Node, below
+from eomgen.algebra.ldl import Pivots
+from eomgen.program import (
+    Apply,
+    Assign,
+    Expression,
+    Function,
+    Number,
+    RequirePositive,
+    Solve,
+    Statement,
+    Value,
+)
+
+LARGEST_EXPRESSION = 12  # operators on one line
+
+
+@dataclass
+class _Draft:
+    """A function being written: the expression and size of each node that has been placed."""
+
+    shared: frozenset[Node]  # these get a name
+    partners: dict[Node, Node]  # sin(a) <-> cos(a)
+    expressions: dict[Node, Expression] = field(default_factory=dict)
+    sizes: dict[Node, int] = field(default_factory=dict)
+    statements: list[Statement] = field(default_factory=list)
+    names: int = 0
+
+    def new_name(self) -> str:
+        """The next name: v0, v1, ..."""
+        self.names += 1
+        return f"v{self.names - 1}"
+
+
+def assemble(
+    name: str, about: str, shape: tuple[int, ...], results: Sequence[Node], pivots: Pivots = ()
+) -> Function:
+    """The function that computes `results`, and checks the pivots that these depend on.
+
+    What no result depends on is not computed. Values are computed in the order in which the
+    derivation made them.
+    """
+    if prod(shape) != len(results):
+        raise ValueError(f"{name} has {len(results)} results, its shape is {shape}")
+    reached = set(below(results))
+    checks = {pivot: scale for pivot, scale in pivots if pivot in reached}
+    nodes = below([*results, *checks.values()])
+    draft = _draft(nodes, [*results, *checks.values()], checks)
+    for node in nodes:
+        if node in checks:
+            _place_all(draft, below([checks[node]], stop=draft.expressions.__contains__))
+        _place_all(draft, [node])
+        if node in checks:
+            _require_positive(draft, node, checks[node])
+    outputs = tuple(draft.expressions[node] for node in results)
+    return Function(name, about, shape, tuple(draft.statements), outputs)
+
+
+def _draft(nodes: list[Node], used: list[Node], checks: dict[Node, Node]) -> _Draft:
+    """An empty draft that knows which nodes to name."""
+    uses = Counter(a for node in nodes for a in node.operands)
+    uses.update(used)
+    partners = _partners(nodes)
+    shared = [a for a in nodes if a.operands and uses[a] > 1]
+    return _Draft(frozenset([*shared, *checks, *partners]), partners)
+
+
+def _partners(nodes: list[Node]) -> dict[Node, Node]:
+    """Both ways between the sine and the cosine of the same angle."""
+    sines = {a.operands[0]: a for a in nodes if a.operator == "sin"}
+    pairs = [(sines.get(a.operands[0]), a) for a in nodes if a.operator == "cos"]
+    both = [(sine, cosine) for sine, cosine in pairs if sine is not None]
+    return dict(both) | {cosine: sine for sine, cosine in both}
+
+
+def _place_all(draft: _Draft, nodes: list[Node]) -> None:
+    """Place nodes that are not placed yet; a sine brings its cosine along."""
+    for node in nodes:
+        if node not in draft.expressions:
+            _place(draft, node)
+            if node in draft.partners:
+                _place(draft, draft.partners[node])
+
+
+def _place(draft: _Draft, node: Node) -> None:
+    """The expression of a node whose operands are placed; a statement where it gets a name."""
+    if node.operator == "system":
+        _solve(draft, node)
+        return
+    draft.expressions[node], draft.sizes[node] = _expression(draft, node)
+    if node in draft.shared:
+        _assign(draft, node)
+
+
+def _expression(draft: _Draft, node: Node) -> tuple[Expression, int]:
+    """The node in terms of its operands, and how many operators stand on the line."""
+    match node.operator:
+        case "number":
+            return Number(node.datum), 0
+        case "read":
+            return node.datum, 0
+        case "symbol":
+            raise ValueError(f"a program cannot read the free symbol {node.datum}")
+        case "solved":
+            system = draft.expressions[node.operands[0]]
+            assert isinstance(system, Apply)
+            return system.operands[node.datum], 0
+    while (size := 1 + sum(draft.sizes[a] for a in node.operands)) > LARGEST_EXPRESSION:
+        _assign(draft, max(node.operands, key=draft.sizes.__getitem__))
+    return Apply(node.operator, tuple(draft.expressions[a] for a in node.operands)), size
+
+
+def _assign(draft: _Draft, node: Node) -> None:
+    """Give a placed node a name."""
+    name = draft.new_name()
+    draft.statements.append(Assign(name, draft.expressions[node]))
+    draft.expressions[node], draft.sizes[node] = Value(name), 0
+
+
+def _require_positive(draft: _Draft, pivot: Node, scale: Node) -> None:
+    value = draft.expressions[pivot]
+    assert isinstance(value, Value)
+    draft.statements.append(RequirePositive(value, draft.expressions[scale]))
+
+
+def _solve(draft: _Draft, system: Node) -> None:
+    """The statement of a system; its expression lists the names of the solution."""
+    entries = [draft.expressions[a] for a in system.operands]
+    size: int = system.datum
+    names = tuple(draft.new_name() for _ in range(size))
+    draft.statements.append(Solve(names, tuple(entries[:-size]), tuple(entries[-size:])))
+    draft.expressions[system] = Apply("solved", tuple(Value(name) for name in names))
+    draft.sizes[system] = 0

@@ -1,0 +1,1 @@
+"""How the tool knows that what it prints is true: used by the command line and by the tests."""

@@ -1,0 +1,90 @@
+"""Random states at which identities are compared: seeded, inside the declared range."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import sympy as sp
+
+from eomgen.mechanics import machine, speeds
+from eomgen.model import Coordinate, Model
+
+COUNT = 50
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Arguments of a program's functions: for each component, `count` values."""
+
+    count: int
+    time: list[float]
+    state: list[list[float]]  # coordinates, then speeds
+    inputs: list[list[float]]
+    parameters: list[list[float]]
+    accelerations: list[list[float]]  # of the speeds
+
+    def arguments(self) -> dict[str, list[list[float]]]:
+        """The components by the names that `program.Read` uses."""
+        return {
+            "time": [self.time],
+            "state": self.state,
+            "inputs": self.inputs,
+            "parameters": self.parameters,
+        }
+
+
+def draw(model: Model, count: int = COUNT, seed: int = 1) -> Samples:
+    """Random samples of everything that an equation depends on."""
+    chance = random.Random(f"{seed} {model.name}")
+    unknown = speeds.symbols(model)
+
+    def values(low: float, high: float) -> list[float]:
+        return [chance.uniform(low, high) for _ in range(count)]
+
+    given = constants(model)
+    return Samples(
+        count=count,
+        time=values(0.0, 3.0),
+        state=[
+            *(values(*bounds(model, c, given)) for c in model.coordinates),
+            *(values(-2.0, 2.0) for _ in unknown),
+        ],
+        inputs=[values(-2.0, 2.0) for _ in model.inputs],
+        parameters=[
+            # near the spec's value, so that the identity is not tested at one point only
+            values(*sorted((0.9 * given[p.symbol], 1.1 * given[p.symbol])))
+            for p in machine.free_parameters(model)
+        ],
+        accelerations=[values(-2.0, 2.0) for _ in unknown],
+    )
+
+
+def constants(model: Model) -> dict[sp.Symbol, float]:
+    """Values of the free parameters; 1 to 2 for those that the spec leaves open."""
+    chance = random.Random(f"parameters {model.name}")
+    return {
+        p.symbol: float(p.value) if p.value is not None else chance.uniform(1.0, 2.0)
+        for p in machine.free_parameters(model)
+    }
+
+
+def bounds(
+    model: Model, coordinate: Coordinate, given: Mapping[sp.Symbol, float]
+) -> tuple[float, float]:
+    """The declared range of a coordinate; else around the initial value, positive if declared."""
+    if coordinate.name in model.range:
+        low, high = (float(number(model, v, given)) for v in model.range[coordinate.name])
+        return low, high
+    if coordinate.positive:
+        return 0.5, 2.0
+    return -1.5, 1.5
+
+
+def number(model: Model, value: sp.Expr, given: Mapping[sp.Symbol, float]) -> sp.Expr:
+    """A constant formula of parameters as a number."""
+    formulas = {p.symbol: p.formula for p in model.parameters if p.formula is not None}
+    while value.free_symbols & formulas.keys():
+        value = value.xreplace(formulas)
+    return value.xreplace({s: sp.Float(v) for s, v in given.items()})

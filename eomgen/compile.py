@@ -1,0 +1,227 @@
+"""Equations on the graph -> Program: what was asked for, sliced from what it needs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import sympy as sp
+
+from eomgen import __version__
+from eomgen.algebra import ldl
+from eomgen.algebra.assemble import assemble
+from eomgen.algebra.graph import Node
+from eomgen.dimension import NONE, TIME, Dimension
+from eomgen.mechanics import energies, machine, virtual_work
+from eomgen.mechanics.equations import Contribution, Equations
+from eomgen.mechanics.kinematics import Kinematics
+from eomgen.mechanics.vectors import dot
+from eomgen.model import Coordinate, Description, Model, Prescribed
+from eomgen.program import Function, Program, Variable
+
+LARGEST_UNROLLED = 12  # equations; above, L D L' runs in a loop
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A scene on the graph with its equations, each derived once when first asked for."""
+
+    kinematics: Kinematics[Node]
+
+    @property
+    def model(self) -> Model:
+        """The scene."""
+        return self.kinematics.model
+
+    @cached_property
+    def equations(self) -> Equations[Node]:
+        """M, h, Q by d'Alembert's principle."""
+        return virtual_work.derive(self.kinematics)
+
+    @cached_property
+    def energy(self) -> tuple[Node, Node]:
+        """T and V."""
+        return (
+            self._total(energies.kinetic(self.kinematics)),
+            self._total(energies.potential(self.kinematics)),
+        )
+
+    def _total(self, shares: Sequence[Contribution[Node]]) -> Node:
+        return sum((s.value for s in shares), self.kinematics.algebra.number(0))
+
+    @cached_property
+    def solution(self) -> tuple[tuple[Node, ...], ldl.Pivots]:
+        """u' = M^-1 (Q - h), unrolled up to `LARGEST_UNROLLED` equations."""
+        matrix, bias = self.equations.mass_matrix, self.equations.bias
+        right = [q - h for q, h in zip(self.equations.generalized_forces, bias, strict=True)]
+        if len(right) > LARGEST_UNROLLED:
+            return tuple(ldl.solve_in_loop(matrix, right)), ()
+        (solution,), pivots = ldl.solve(matrix, right)
+        return tuple(solution), pivots
+
+    @cached_property
+    def rates(self) -> tuple[Node, ...]:
+        """q'."""
+        return tuple(self.kinematics.flow.rates[c.symbol] for c in self.model.coordinates)
+
+    @cached_property
+    def accelerations(self) -> tuple[Node, ...]:
+        """q'' = (dq'/du) u' + the rate of q' with u' = 0."""
+        if not self.model.speeds:
+            return self.solution[0]
+        algebra = self.kinematics.algebra
+        one = algebra.number(1)
+        return tuple(
+            dot([algebra.along(r, {s.symbol: one}) for s in self.model.speeds], self.solution[0])
+            + self.kinematics.rate(r)
+            for r in self.rates
+        )
+
+    @cached_property
+    def outputs(self) -> tuple[Node, ...]:
+        """The author's own formulas."""
+        bindings: dict[sp.Symbol, Node] = {}
+        if any(o.formula.free_symbols & _accelerations(self.model) for o in self.model.outputs):
+            pairs = zip(self.model.coordinates, self.accelerations, strict=True)
+            bindings = {c.acceleration: a for c, a in pairs}
+        algebra = self.kinematics.algebra.extended(bindings)
+        return tuple(algebra.of(o.formula) for o in self.model.outputs)
+
+
+def _accelerations(model: Model) -> set[sp.Symbol]:
+    return {c.acceleration for c in model.coordinates}
+
+
+def machine_of(model: Model) -> Machine:
+    """The scene on a new graph.
+
+    Raises:
+        UsageError: declared speeds are not independent.
+    """
+    return Machine(machine.graph_kinematics(model))
+
+
+Build = Callable[[Machine], Function]
+
+
+def _flat(rows: Sequence[Sequence[Node]]) -> list[Node]:
+    return [entry for row in rows for entry in row]
+
+
+def _mass_matrix(m: Machine) -> Function:
+    n = len(m.equations.bias)
+    about = "M of M u' + h = Q"
+    return assemble("mass_matrix", about, (n, n), _flat(m.equations.mass_matrix))
+
+
+def _bias(m: Machine) -> Function:
+    about = "h of M u' + h = Q: inertia terms without accelerations"
+    return assemble("bias", about, (len(m.equations.bias),), m.equations.bias)
+
+
+def _generalized_forces(m: Machine) -> Function:
+    about = "Q of M u' + h = Q: everything applied"
+    forces = m.equations.generalized_forces
+    return assemble("generalized_forces", about, (len(forces),), forces)
+
+
+def _accelerations_function(m: Machine) -> Function:
+    about = "u' = M^-1 (Q - h), the derivatives of the speeds"
+    solution, pivots = m.solution
+    return assemble("accelerations", about, (len(solution),), solution, pivots)
+
+
+def _coordinate_accelerations(m: Machine) -> Function:
+    about = "q'', the second derivatives of the coordinates"
+    results = m.accelerations
+    return assemble("coordinate_accelerations", about, (len(results),), results, m.solution[1])
+
+
+def _state_derivative(m: Machine) -> Function:
+    about = "(q', u'), the derivative of the state"
+    solution, pivots = m.solution
+    results = [*m.rates, *solution]
+    return assemble("state_derivative", about, (len(results),), results, pivots)
+
+
+def _energy(m: Machine) -> Function:
+    return assemble("energy", "kinetic and potential energy [J]", (2,), m.energy)
+
+
+def _outputs(m: Machine) -> Function:
+    return assemble(
+        "outputs", "the outputs of the spec", (len(m.outputs),), m.outputs, m.solution[1]
+    )
+
+
+FUNCTIONS: dict[str, Build] = {
+    "mass_matrix": _mass_matrix,
+    "bias": _bias,
+    "generalized_forces": _generalized_forces,
+    "accelerations": _accelerations_function,
+    "coordinate_accelerations": _coordinate_accelerations,
+    "state_derivative": _state_derivative,
+    "energy": _energy,
+    "outputs": _outputs,
+}
+
+
+def wanted(model: Model) -> tuple[str, ...]:
+    """The functions of a model: q'' apart only where the speeds are not q'."""
+    return tuple(f for f in FUNCTIONS if model.speeds or f != "coordinate_accelerations")
+
+
+def program(m: Machine) -> Program:
+    """The program of a scene.
+
+    Raises:
+        SingularMassMatrix: some motion has no inertia whatever the state.
+    """
+    model = m.model
+    return Program(
+        name=model.name,
+        title=next(iter(model.title.values())),
+        digest=model.digest,
+        version=__version__,
+        coordinates=tuple(_moving(model, c) for c in model.coordinates),
+        speeds=_speeds(model),
+        inputs=tuple(_variable(i.name, i.description) for i in model.inputs),
+        parameters=tuple(
+            _variable(p.name, p.description, p.value) for p in machine.free_parameters(model)
+        ),
+        outputs=tuple(_variable(o.name, o.description) for o in model.outputs),
+        functions=tuple(FUNCTIONS[name](m) for name in wanted(model)),
+    )
+
+
+def _variable(name: str, description: Description, value: sp.Expr | None = None) -> Variable:
+    return Variable(name, si_unit(description.dimension), description.about, value)
+
+
+def si_unit(dimension: Dimension | None) -> str:
+    """SI base units, empty where the spec states none or where it is a plain number."""
+    return "" if dimension is None or dimension == NONE else str(dimension)
+
+
+def _rate_dimension(description: Description) -> Dimension | None:
+    return None if description.dimension is None else description.dimension / TIME
+
+
+def _moving(model: Model, moving: Coordinate | Prescribed) -> Variable:
+    return _variable(moving.name, moving.description, model.initial.get(moving.name))
+
+
+def _speeds(model: Model) -> tuple[Variable, ...]:
+    """The declared speeds, or one rate for each coordinate."""
+    if model.speeds:
+        return tuple(_variable(s.name, s.description) for s in model.speeds)
+    return tuple(
+        Variable(
+            c.rate.name,
+            si_unit(_rate_dimension(c.description)),
+            f"rate of {c.name}",
+            model.initial.get(c.rate.name),
+        )
+        for c in model.coordinates
+    )

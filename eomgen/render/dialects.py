@@ -1,0 +1,70 @@
+"""What C and Python call the operators, how they write numbers, which names they reserve."""
+
+import keyword
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """How a language writes numbers and calls, and the names that it keeps for itself."""
+
+    number: str  # format of a literal
+    calls: Mapping[str, str]  # operator -> name
+    reserved: frozenset[str]  # names that a local variable cannot have
+    reserved_members: frozenset[str]  # names that a parameter cannot have
+
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+_KEYWORDS = _words("""
+auto break case char const continue default do double else enum extern float for goto if inline int
+long register restrict return short signed sizeof static struct switch typedef union unsigned void
+volatile while alignas alignof and and_eq asm atomic_cancel atomic_commit atomic_noexcept bitand
+bitor bool catch char16_t char32_t char8_t class co_await co_return co_yield compl concept
+const_cast consteval constexpr constinit decltype delete dynamic_cast explicit export false friend
+mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public
+reinterpret_cast requires static_assert static_cast template this thread_local throw true try
+typeid typename typeof typeof_unqual using virtual wchar_t xor xor_eq near far huge pascal cdecl
+""")
+_MACROS = _words("""
+I NULL EOF NAN INFINITY HUGE HUGE_VAL DOMAIN SING OVERFLOW UNDERFLOW PLOSS TLOSS
+complex imaginary errno assert linux unix i386 stdin stdout stderr offsetof
+""")
+_MATH = _words("""
+acos asin atan atan2 cos sin tan cosh sinh tanh acosh asinh atanh exp exp2 exp10 expm1 frexp ilogb
+ldexp log log10 log1p log2 logb modf scalb scalbn scalbln cbrt fabs hypot pow pow10 sqrt erf erfc
+gamma lgamma tgamma ceil floor nearbyint rint lrint llrint round lround llround trunc fmod drem
+remainder remquo copysign nan nextafter nexttoward fdim fmax fmin fma j0 j1 jn y0 y1 yn signgam
+significand finite isnan isinf isfinite isnormal signbit fpclassify abs div index
+""")
+_C_MEMBERS = _KEYWORDS | _MACROS
+
+C_FUNCTIONS = {  # operator -> function of <math.h>; its macro is the name in capitals
+    "sin": "sin", "cos": "cos", "tan": "tan", "asin": "asin", "acos": "acos", "atan": "atan",
+    "atan2": "atan2", "sinh": "sinh", "cosh": "cosh", "tanh": "tanh", "sqrt": "sqrt", "exp": "exp",
+    "log": "log", "abs": "fabs", "min": "fmin", "max": "fmax", "power": "pow",
+}  # fmt: skip
+_C_CALLS = {operator: name.upper() for operator, name in C_FUNCTIONS.items()} | {"sign": "SIGN"}
+C = Dialect(
+    number="REAL({})",
+    calls=_C_CALLS,
+    reserved=_C_MEMBERS
+    | {"t", "state", "inputs", "p", "result", "REAL", "EPSILON", "PIVOT"}
+    | {name + suffix for name in _MATH for suffix in ("", "f", "l")}
+    | frozenset(_C_CALLS.values()),
+    reserved_members=_C_MEMBERS,
+)
+PYTHON = Dialect(
+    number="{}",
+    calls={
+        **{o: f"np.{o}" for o in ("sin", "cos", "tan", "sinh", "cosh", "tanh")},
+        **{o: f"np.{o}" for o in ("sqrt", "exp", "log", "abs", "sign", "power")},
+        **{o: f"np.arc{o[1:]}" for o in ("asin", "acos", "atan", "atan2")},
+        "min": "np.fmin", "max": "np.fmax",
+    },
+    reserved=frozenset(keyword.kwlist) | {"np", "t", "state", "inputs", "parameters"},
+    reserved_members=frozenset(),  # keys of a dictionary
+)  # fmt: skip

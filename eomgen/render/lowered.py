@@ -1,0 +1,149 @@
+"""A function as machines like it: powers as products, no dead values, operations counted."""
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from fractions import Fraction
+from itertools import count
+
+from eomgen.program import (
+    Apply,
+    Assign,
+    Expression,
+    Function,
+    Number,
+    Read,
+    RequirePositive,
+    Solve,
+    Statement,
+    Value,
+)
+
+UNROLLED = 64  # largest exponent written as products
+ONE = Number(Fraction(1))
+Name = Callable[[Expression], Value]  # makes an assignment of its argument
+
+
+def lower(function: Function) -> Function:
+    """The same function without integer or half-integer powers and without unused values."""
+    statements: list[Statement] = []
+    fresh = _fresh_names(function)
+
+    def name(expression: Expression) -> Value:
+        statements.append(Assign(next(fresh), expression))
+        return Value(statements[-1].name)
+
+    for statement in function.statements:
+        lowered = _map(statement, lambda e: _without_powers(e, name))
+        statements.append(lowered)
+    results = tuple(_without_powers(e, name) for e in function.results)
+    return _without_dead_values(replace(function, statements=tuple(statements), results=results))
+
+
+def _fresh_names(function: Function) -> Iterator[str]:
+    taken = {n for s in function.statements for n in defined(s)}
+    return (f"power_{i}" for i in count(1) if f"power_{i}" not in taken)
+
+
+def defined(statement: Statement) -> tuple[str, ...]:
+    """The names that a statement gives values to."""
+    match statement:
+        case Assign(name, _):
+            return (name,)
+        case Solve(names, _, _):
+            return names
+    return ()
+
+
+def operands(statement: Statement) -> tuple[Expression, ...]:
+    """The expressions that a statement reads."""
+    match statement:
+        case Assign(_, expression):
+            return (expression,)
+        case RequirePositive(value, scale):
+            return (value, scale)
+        case Solve(_, matrix, right):
+            return matrix + right
+
+
+def _map(statement: Statement, change: Callable[[Expression], Expression]) -> Statement:
+    """The statement with every expression changed."""
+    match statement:
+        case Assign(name, expression):
+            return Assign(name, change(expression))
+        case RequirePositive(value, scale):
+            return RequirePositive(value, change(scale))
+        case Solve(names, matrix, right):
+            return Solve(names, tuple(map(change, matrix)), tuple(map(change, right)))
+
+
+def _without_powers(expression: Expression, name: Name) -> Expression:
+    if not isinstance(expression, Apply):
+        return expression
+    changed = tuple(_without_powers(e, name) for e in expression.operands)
+    match (expression.operator, changed):
+        case ("power", (base, Number(exponent))) if abs(exponent) <= UNROLLED:
+            if exponent.denominator == 1:
+                return _power(base, int(exponent), name)
+            if exponent.denominator == 2:
+                return _power(Apply("sqrt", (base,)), exponent.numerator, name)
+    return Apply(expression.operator, changed)
+
+
+def _power(base: Expression, exponent: int, name: Name) -> Expression:
+    """base^exponent = 1 / base^-exponent, and products of squares where it is positive."""
+    if exponent < 0:
+        return Apply("divide", (ONE, _power(base, -exponent, name)))
+    if exponent == 0:
+        return ONE
+    if exponent == 1:
+        return base
+    return _product(base if not isinstance(base, Apply) else name(base), exponent, name)
+
+
+def _product(base: Expression, exponent: int, name: Name) -> Expression:
+    if exponent == 1:
+        return base
+    if exponent % 2:
+        return Apply("multiply", (_product(base, exponent - 1, name), base))
+    root = base if exponent == 2 else name(_product(base, exponent // 2, name))
+    return Apply("multiply", (root, root))
+
+
+def atoms(expression: Expression) -> Iterator[Number | Read | Value]:
+    """The numbers, arguments and values in an expression, from left to right."""
+    if isinstance(expression, Apply):
+        for operand in expression.operands:
+            yield from atoms(operand)
+    else:
+        yield expression
+
+
+def _without_dead_values(function: Function) -> Function:
+    """Backward over the statements: an assignment stays if something after it reads it."""
+    alive = {a for e in function.results for a in atoms(e)}
+    kept: list[Statement] = []
+    for statement in reversed(function.statements):
+        if isinstance(statement, Assign) and Value(statement.name) not in alive:
+            continue
+        kept.append(statement)
+        alive.update(a for e in operands(statement) for a in atoms(e))
+    return replace(function, statements=tuple(reversed(kept)))
+
+
+def expressions(function: Function) -> tuple[Expression, ...]:
+    """All expressions of a function, in order."""
+    inside = tuple(e for s in function.statements for e in operands(s))
+    return inside + function.results
+
+
+def operations(function: Function) -> Counter[str]:
+    """How often each operator is applied; the loop of a `Solve` is not counted."""
+
+    def applied(expression: Expression) -> Iterator[str]:
+        if isinstance(expression, Apply):
+            yield expression.operator
+            for operand in expression.operands:
+                yield from applied(operand)
+
+    return Counter(o for e in expressions(function) for o in applied(e))

@@ -1,0 +1,55 @@
+"""The table of targets: one row a language, one template a file."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import jinja2
+
+from eomgen.render import code
+from eomgen.render.templating import fill
+
+
+class Named(Protocol):
+    """What is rendered: a program, or a record that a target's `context` understands."""
+
+    @property
+    def name(self) -> str:
+        """The stem of the files."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """A kind of document: file name -> template, and the names that its templates see.
+
+    In a file name `{name}` is the subject's name and `{module}` the identifier made of it.
+    `context` returns text, numbers and records of these, nothing that a template could misuse.
+    """
+
+    about: str
+    files: Mapping[str, str]
+    context: Callable[[Any], dict[str, object]]
+
+
+TARGETS = {
+    "c": Target(
+        "C99 header and source",
+        {"{name}.h": "c/model.h.j2", "{name}.c": "c/model.c.j2"},
+        code.c_context,
+    ),
+    "python": Target(
+        "Python module that needs NumPy only",
+        {"{module}.py": "python/model.py.j2"},
+        code.python_context,
+    ),
+}
+
+
+def render(subject: Named, target: Target, templates: jinja2.Environment) -> dict[str, str]:
+    """File name -> text. Pure: writing files is the command line's work."""
+    context = target.context(subject)
+    names = {"name": subject.name, "module": code.prefix(subject.name)}
+    return {
+        file.format(**names): fill(templates, template, context)
+        for file, template in target.files.items()
+    }

@@ -1,0 +1,128 @@
+"""Templates: where ours are, how a user's folder overrides them, whose mistake an error is."""
+
+import textwrap
+import traceback
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from jinja2.sandbox import ImmutableSandboxedEnvironment
+
+from eomgen.errors import UsageError
+
+SUFFIX = ".j2"
+
+
+def shipped(folder: str) -> Path:
+    """Our `templates` or `specs`: inside the installed package, or beside it in a checkout."""
+    package = Path(__file__).parents[1]
+    installed = package / folder
+    return installed if installed.is_dir() else package.parent / folder
+
+
+class _Sandbox(ImmutableSandboxedEnvironment):
+    """Templates see text and numbers: a SymPy object would take text to `eval`."""
+
+    def is_safe_attribute(self, obj: object, attr: str, value: object) -> bool:
+        """Whether a template may read `obj.attr`."""
+        return not type(obj).__module__.startswith("sympy") and super().is_safe_attribute(
+            obj, attr, value
+        )
+
+
+def wrap(text: str, indent: int = 0, hanging: int = 4, width: int = 100) -> str:
+    """`text` broken at spaces; each line after the first starts `hanging` further right."""
+    return "\n".join(
+        textwrap.wrap(
+            text,
+            width,
+            initial_indent=" " * indent,
+            subsequent_indent=" " * (indent + hanging),
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+    )
+
+
+def one_line(text: str) -> str:
+    """`text` with every run of white space as one space."""
+    return " ".join(text.split())
+
+
+def c_comment(text: str) -> str:
+    """`text` for the inside of a C comment: it can neither end it nor start another."""
+    safe = one_line(text)
+    for pair in ("*/", "/*", "??"):
+        safe = safe.replace(pair, f"{pair[0]} {pair[1]}")
+    return safe
+
+
+def c_string(text: str) -> str:
+    """`text` as a C string literal."""
+    safe = one_line(text).replace("\\", "\\\\").replace('"', '\\"').replace("??", '?""?')
+    return f'"{safe}"'
+
+
+def python_string(text: str) -> str:
+    """`text` as a Python string literal in double quotes."""
+    safe = one_line(text).replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{safe}"'
+
+
+def docstring(text: str) -> str:
+    """`text` for the inside of a Python docstring."""
+    return one_line(text).replace("\\", "\\\\").replace('"', '\\"')
+
+
+FILTERS = {
+    "wrap": wrap,
+    "one_line": one_line,
+    "c_comment": c_comment,
+    "c_string": c_string,
+    "python_string": python_string,
+    "docstring": docstring,
+}
+
+
+def environment(user_folder: Path | None = None) -> jinja2.Environment:
+    """Our templates, behind those of `user_folder`; ours also under the prefix `builtin/`."""
+    if user_folder is not None and not user_folder.is_dir():
+        raise UsageError(f"{user_folder}: no such folder of templates")
+    ours = jinja2.FileSystemLoader(shipped("templates"))
+    folders = [jinja2.FileSystemLoader(user_folder)] if user_folder else []
+    made = _Sandbox(
+        loader=jinja2.ChoiceLoader([jinja2.PrefixLoader({"builtin": ours}), *folders, ours]),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,
+    )
+    made.filters.update(FILTERS)
+    return made
+
+
+def fill(templates: jinja2.Environment, template: str, context: dict[str, Any]) -> str:
+    """The text of `template`. Raises UsageError where a user's template is wrong."""
+    try:
+        return templates.get_template(template).render(context)
+    except Exception as error:  # of any kind: a template can divide by zero
+        place = _place_of_user(error)
+        if place is None:
+            raise
+        raise UsageError(f"{place}: {error} ({type(error).__name__})") from error
+
+
+def _place_of_user(error: Exception) -> str | None:
+    """`file:line` of the template at fault, or None where the mistake is ours."""
+    if isinstance(error, jinja2.TemplateSyntaxError):
+        file, line = error.filename or "", error.lineno
+    else:
+        frames = [
+            f for f in traceback.extract_tb(error.__traceback__) if f.filename.endswith(SUFFIX)
+        ]
+        if not frames:
+            return None
+        file, line = frames[-1].filename, frames[-1].lineno or 1
+    ours = shipped("templates").resolve()
+    return None if Path(file).resolve().is_relative_to(ours) else f"{file}:{line}"
