@@ -4,7 +4,7 @@ import operator
 import random
 from functools import reduce
 
-from eomgen.algebra import graph as g
+from eomgen.algebra import elementary as g
 from eomgen.algebra.graph import Graph, Node
 from eomgen.program import OPERATORS
 
@@ -24,7 +24,7 @@ def coverage(x: Node, y: Node) -> Node:
     """One expression that uses every operator of the program."""
     graph = x.graph
     terms = [graph.number(k + 1) * example(name, x, y) for k, name in enumerate(OPERATORS)]
-    return reduce(operator.add, [*terms, -(x - y) * y, (-x) / (y + 3) * (-y - x)])
+    return reduce(operator.add, [*terms, g.exp(-(x * y)), (-x) / (y + 3) * (-y - x)])
 
 
 def uniform(seed: int, count: int = 1) -> list[list[float]]:

@@ -10,7 +10,7 @@ from graph_cases import coverage, example, state_leaves, uniform
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eomgen.algebra import graph as g
+from eomgen.algebra import elementary as g
 from eomgen.algebra.arithmetic import (
     EXACT,
     FLOAT,
@@ -21,7 +21,8 @@ from eomgen.algebra.arithmetic import (
     over,
 )
 from eomgen.algebra.closed import ClosedForm
-from eomgen.algebra.graph import BUILD, Graph, below
+from eomgen.algebra.elementary import BUILD
+from eomgen.algebra.graph import Graph, below
 from eomgen.program import OPERATORS
 
 
@@ -44,8 +45,8 @@ def test_folding(leaves):
     graph, x, y = leaves
     zero, one, half, negative = graph.zero, graph.one, Fraction(1, 2), -x
     for left, right in [
-        (x + 0, x), (0 + x, x), (x * 0, zero), (1 * x, x), (x - x, zero), (-negative, x), (x / 1, x),
-        (x**0, one), (x**1, x), (x**2, x * x), (x**5, x * ((x * x) * (x * x))),
+        (x + 0, x), (0 + x, x), (x * 0, zero), (1 * x, x), (x - x, zero), (-negative, x),
+        (x / 1, x),         (x**0, one), (x**1, x), (x**2, x * x), (x**5, x * ((x * x) * (x * x))),
         (x**-2, 1 / (x * x)), (x * (1 / x), one), ((y / x) * x, y),
         (x + (-x), zero), (x + (-1) * y, x - y), (x - (-1) * y, x + y), (-(x - y), y - x),
         (2 * (3 * x), 6 * x), ((2 * x) * (3 * y), 6 * (x * y)), ((-x) * y, -(x * y)),
@@ -64,6 +65,13 @@ def test_folding(leaves):
         (g.atan2(zero, one), zero), (g.acos(one), zero),
     ]:  # fmt: skip
         assert left is right, (left, right)
+
+
+def test_products_are_not_taken_apart(leaves):
+    _, x, y = leaves
+    half_length, square = Fraction(1, 2) * x, y * y
+    assert set((half_length * square).operands) == {half_length, square}
+    assert set(((x + y) * (x - y)).operands) == {x + y, x - y}
 
 
 def test_sine_and_cosine_of_parts_of_a_turn(leaves):

@@ -7,18 +7,8 @@ in reverse, d is the adjoint of y.
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
-from eomgen.algebra.graph import (
-    Graph,
-    Node,
-    below,
-    cos,
-    cosh,
-    log,
-    sign,
-    sin,
-    sinh,
-    sqrt,
-)
+from eomgen.algebra.elementary import cos, cosh, log, sign, sin, sinh
+from eomgen.algebra.graph import Graph, Node, below, sqrt
 
 HALF = Fraction(1, 2)
 

@@ -13,11 +13,9 @@ from fractions import Fraction
 from math import isqrt
 from typing import Any
 
-from eomgen.program import OPERATORS, Read
+from eomgen.program import Read
 
 LEAVES = ("number", "read", "symbol")
-ODD = frozenset(("sin", "tan", "asin", "atan", "sinh", "tanh", "sign"))
-EVEN = frozenset(("cos", "cosh", "abs"))
 LARGEST_UNROLLED_EXPONENT = 64
 Exact = int | Fraction
 
@@ -122,14 +120,14 @@ class Graph:
         return node
 
 
-def _two(operator: str, a: Node, b: Node) -> Node:
+def binary(operator: str, a: Node, b: Node) -> Node:
     """The node of a binary operator: one look-up."""
     graph = a.graph
     key = (operator, a.id, b.id)
     return graph._table.get(key) or graph._new(key, (a, b), None)
 
 
-def _one(operator: str, a: Node) -> Node:
+def unary(operator: str, a: Node) -> Node:
     """The node of a unary operator: one look-up."""
     key = (operator, a.id)
     return a.graph._table.get(key) or a.graph._new(key, (a,), None)
@@ -146,10 +144,10 @@ def add(a: Node, b: Node) -> Node:
     if a.operator == "negate":
         return subtract(b, a.operands[0])
     if a is b or a.operator == "multiply" or b.operator == "multiply":
-        (c, x), (d, y) = _term(a), _term(b)
+        (c, x), (d, y) = term(a), term(b)
         if x is y:
             return _scale(c + d, x)
-    return _two("add", a, b) if a.id < b.id else _two("add", b, a)
+    return binary("add", a, b) if a.id < b.id else binary("add", b, a)
 
 
 def subtract(a: Node, b: Node) -> Node:
@@ -165,13 +163,13 @@ def subtract(a: Node, b: Node) -> Node:
     if a.operator == "negate":
         return negate(add(a.operands[0], b))
     if a.operator == "multiply" or b.operator == "multiply":
-        (c, x), (d, y) = _term(a), _term(b)
+        (c, x), (d, y) = term(a), term(b)
         if x is y:
             return _scale(c - d, x)
-    return _two("subtract", a, b)
+    return binary("subtract", a, b)
 
 
-def _term(a: Node) -> tuple[Exact, Node]:
+def term(a: Node) -> tuple[Exact, Node]:
     """The numeric coefficient of a product, and the rest."""
     if a.operator == "multiply" and a.operands[0].operator == "number":
         return a.operands[0].datum, a.operands[1]
@@ -186,14 +184,14 @@ def _shift(a: Node, c: Fraction) -> Node:
     if a.operator == "number":
         return number(a.datum + c)
     if a.operator == "negate":
-        return _two("subtract", number(c), a.operands[0])
+        return binary("subtract", number(c), a.operands[0])
     if a.operator in ("add", "subtract"):
         first, second = a.operands
         if second.operator == "number":
             return _shift(first, c + (second.datum if a.operator == "add" else -second.datum))
         if first.operator == "number":
             return _shift(negate(second), first.datum + c)
-    return _two("add", a, number(c)) if c > 0 else _two("subtract", a, number(-c))
+    return binary("add", a, number(c)) if c > 0 else binary("subtract", a, number(-c))
 
 
 def negate(a: Node) -> Node:
@@ -204,7 +202,7 @@ def negate(a: Node) -> Node:
         return a.operands[0]
     if a.operator == "subtract":
         return subtract(a.operands[1], a.operands[0])
-    return _one("negate", a)
+    return unary("negate", a)
 
 
 def multiply(a: Node, b: Node) -> Node:
@@ -217,17 +215,25 @@ def multiply(a: Node, b: Node) -> Node:
         return negate(multiply(a.operands[0], b))
     if b.operator == "negate":
         return negate(multiply(a, b.operands[0]))
-    if a is b and a.operator == "sqrt":
-        return a.operands[0]
-    if a.operator == "divide" and a.operands[1] is b:
-        return a.operands[0]
-    if b.operator == "divide" and b.operands[1] is a:
-        return b.operands[0]
+    if a is b or a.operator == "divide" or b.operator == "divide":
+        cancelled = _cancelled(a, b)
+        if cancelled is not None:
+            return cancelled
     if a.operator == "multiply" and b.operator == "multiply":
-        (c, x), (d, y) = _term(a), _term(b)
+        (c, x), (d, y) = term(a), term(b)
         if x is not a and y is not b:
             return _scale(c * d, multiply(x, y))
-    return _two("multiply", a, b) if a.id < b.id else _two("multiply", b, a)
+    return binary("multiply", a, b) if a.id < b.id else binary("multiply", b, a)
+
+
+def _cancelled(a: Node, b: Node) -> Node | None:
+    """The product of two equal roots, or of a quotient and its denominator."""
+    if a is b:
+        return a.operands[0] if a.operator == "sqrt" else None
+    for quotient, other in ((a, b), (b, a)):
+        if quotient.operator == "divide" and quotient.operands[1] is other:
+            return quotient.operands[0]
+    return None
 
 
 def _scale(c: Exact, a: Node) -> Node:
@@ -243,12 +249,12 @@ def _scale(c: Exact, a: Node) -> Node:
         return _scale(-c, a.operands[0])
     if c < 0:
         return negate(_scale(-c, a))
-    d, x = _term(a)
+    d, x = term(a)
     if x is not a:
         return _scale(c * d, x)
     if a.operator == "divide" and a.operands[0].operator == "number":
         return divide(_scale(c, a.operands[0]), a.operands[1])
-    return _two("multiply", graph.number(c), a)
+    return binary("multiply", graph.number(c), a)
 
 
 def divide(a: Node, b: Node) -> Node:
@@ -263,26 +269,26 @@ def divide(a: Node, b: Node) -> Node:
         return negate(divide(a, b.operands[0]))
     if a.operator == "negate":
         return negate(divide(a.operands[0], b))
-    d, y = _term(b)
+    d, y = term(b)
     if y is not b:
         return _scale(1 / Fraction(d), divide(a, y))
-    return _two("divide", a, b)
+    return binary("divide", a, b)
 
 
 def power(a: Node, b: Node) -> Node:
     """The power a ** b; small integers and halves become products and square roots."""
     if b.operator != "number":
-        return a.graph.one if a is a.graph.one else _two("power", a, b)
+        return a.graph.one if a is a.graph.one else binary("power", a, b)
     exponent: Fraction = b.datum
     if exponent < 0 and exponent.denominator <= 2:
         return divide(a.graph.one, power(a, negate(b)))
     if exponent > LARGEST_UNROLLED_EXPONENT and a.operator != "number":
-        return _two("power", a, b)
+        return binary("power", a, b)
     if exponent.denominator == 1:
         return _integer_power(a, int(exponent))
     if exponent.denominator == 2:
         return multiply(_integer_power(a, int(exponent)), sqrt(a))
-    return a if a in (a.graph.zero, a.graph.one) and exponent > 0 else _two("power", a, b)
+    return a if a in (a.graph.zero, a.graph.one) and exponent > 0 else binary("power", a, b)
 
 
 def _integer_power(a: Node, exponent: int) -> Node:
@@ -306,87 +312,10 @@ def _root(value: Fraction) -> Fraction | None:
     return root if root * root == value else None
 
 
-_AT_ZERO = dict.fromkeys(("sin", "tan", "asin", "atan", "sinh", "tanh"), 0) | dict.fromkeys(
-    ("cos", "cosh", "exp"), 1
-)
-_AT_NUMBER: dict[str, Callable[[Fraction], Exact | None]] = {
-    **{name: lambda x, y=y: None if x else y for name, y in _AT_ZERO.items()},  # type: ignore[misc]
-    "sqrt": _root,
-    "abs": abs,
-    "sign": lambda x: (x > 0) - (x < 0),
-    "log": lambda x: 0 if x == 1 else None,
-    "acos": lambda x: 0 if x == 1 else None,
-}
-# sin(k pi / 6), where it is rational
-_SINE_OF_SIXTHS = {0: 0, 1: 1, 3: 2, 5: 1, 6: 0, 7: -1, 9: -2, 11: -1}  # halves
-
-
-def _turn(operator: str, a: Node) -> Exact | None:
-    """The sine or cosine of a rational multiple of pi, where it is rational."""
-    factor, rest = _term(a)
-    sixths = 6 * Fraction(factor) + (3 if operator == "cos" else 0)
-    if rest.operator != "pi" or sixths % 12 not in _SINE_OF_SIXTHS:
-        return None
-    return Fraction(_SINE_OF_SIXTHS[int(sixths % 12)], 2)
-
-
-def _unary(operator: str) -> Callable[[Node], Node]:
-    """The constructor of a function of one operand."""
-
-    def build(a: Node) -> Node:
-        if a.operator == "number":
-            value = _AT_NUMBER[operator](a.datum)
-            if value is not None:
-                return a.graph.number(value)
-        if a.operator == "negate" and operator in ODD:
-            return negate(build(a.operands[0]))
-        if a.operator == "negate" and operator in EVEN:
-            return build(a.operands[0])
-        if operator == "sin" or operator == "cos":
-            value = _turn(operator, a)
-            if value is not None:
-                return a.graph.number(value)
-        return _one(operator, a)
-
-    build.__doc__ = f"{operator}(a)."
-    return build
-
-
-def _extreme(operator: str, pick: Callable[[Fraction, Fraction], Fraction]) -> Callable[..., Node]:
-    """The constructor of `min` or `max`."""
-
-    def build(a: Node, b: Node) -> Node:
-        if a is b:
-            return a
-        if a.operator == b.operator == "number":
-            return a.graph.number(pick(a.datum, b.datum))
-        return _two(operator, a, b) if a.id < b.id else _two(operator, b, a)
-
-    build.__doc__ = f"{operator}(a, b)."
-    return build
-
-
-def atan2(y: Node, x: Node) -> Node:
-    """The angle of the point (x, y)."""
-    if y is y.graph.zero and x.operator == "number" and x.datum > 0:
-        return y
-    return _two("atan2", y, x)
-
-
-sin, cos, tan = _unary("sin"), _unary("cos"), _unary("tan")
-asin, acos, atan = _unary("asin"), _unary("acos"), _unary("atan")
-sinh, cosh, tanh = _unary("sinh"), _unary("cosh"), _unary("tanh")
-sqrt, exp, log = _unary("sqrt"), _unary("exp"), _unary("log")
-absolute, sign = _unary("abs"), _unary("sign")
-minimum, maximum = _extreme("min", min), _extreme("max", max)
-
-BUILD: dict[str, Callable[..., Node]] = {
-    "add": add, "subtract": subtract, "multiply": multiply, "divide": divide, "negate": negate,
-    "power": power, "sin": sin, "cos": cos, "tan": tan, "asin": asin, "acos": acos, "atan": atan,
-    "atan2": atan2, "sinh": sinh, "cosh": cosh, "tanh": tanh, "sqrt": sqrt, "exp": exp,
-    "log": log, "abs": absolute, "sign": sign, "min": minimum, "max": maximum,
-}  # fmt: skip
-assert {*BUILD, "pi"} == {*OPERATORS}
+def sqrt(a: Node) -> Node:
+    """The square root."""
+    root = _root(a.datum) if a.operator == "number" else None
+    return unary("sqrt", a) if root is None else a.graph.number(root)
 
 
 def below(nodes: Iterable[Node], stop: Callable[[Node], bool] = lambda node: False) -> list[Node]:

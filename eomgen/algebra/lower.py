@@ -7,9 +7,9 @@ from typing import Any
 
 import sympy as sp
 
-from eomgen.algebra import graph as g
 from eomgen.algebra.derive import direction
-from eomgen.algebra.graph import Graph, Node
+from eomgen.algebra.elementary import BUILD, exp
+from eomgen.algebra.graph import Graph, Node, add, power
 
 FUNCTIONS: dict[Any, str] = {
     sp.sin: "sin", sp.cos: "cos", sp.tan: "tan", sp.asin: "asin", sp.acos: "acos",
@@ -44,7 +44,7 @@ class GraphAlgebra:
 
     def apply(self, name: str, *operands: Node) -> Node:
         """An operator of `program.OPERATORS` on its operands."""
-        return self.graph.pi() if name == "pi" else g.BUILD[name](*operands)
+        return self.graph.pi() if name == "pi" else BUILD[name](*operands)
 
     def extended(self, bindings: Mapping[sp.Symbol, Node]) -> "GraphAlgebra":
         """The same graph, with more symbols bound."""
@@ -76,7 +76,7 @@ class GraphAlgebra:
         return LOWERINGS[expression.func](self, expression)
 
     def _sum(self, expression: sp.Expr) -> Node:
-        return reduce(g.add, [self.of(term) for term in expression.args])
+        return reduce(add, [self.of(term) for term in expression.args])
 
     def _product(self, expression: sp.Expr) -> Node:
         """Factors with a negative numeric exponent go to one denominator; the number comes last."""
@@ -91,12 +91,12 @@ class GraphAlgebra:
         return self.of(number) * (above / below)
 
     def _power(self, expression: sp.Expr) -> Node:
-        return g.power(self.of(expression.base), self.of(expression.exp))
+        return power(self.of(expression.base), self.of(expression.exp))
 
 
 def _chain(operation: str, operands: list[Node]) -> Node:
     """A function of its operands; `min` and `max` of many as a chain of two each."""
-    build = g.BUILD[operation]
+    build = BUILD[operation]
     return reduce(build, operands) if operation in ("min", "max") else build(*operands)
 
 
@@ -105,5 +105,5 @@ LOWERINGS: dict[Any, Callable[[GraphAlgebra, sp.Expr], Node]] = {
     sp.Mul: GraphAlgebra._product,
     sp.Pow: GraphAlgebra._power,
     type(sp.pi): lambda algebra, pi: algebra.graph.pi(),
-    type(sp.E): lambda algebra, e: g.exp(algebra.graph.one),
+    type(sp.E): lambda algebra, e: exp(algebra.graph.one),
 }

@@ -26,6 +26,13 @@ class Bench:
     leaves: dict[Node, Any]
     arithmetic: Arithmetic
 
+    @property
+    def size(self) -> int:
+        """The number of samples."""
+        return max(
+            (len(v) for v in self.leaves.values() if hasattr(v, "shape") and v.shape), default=1
+        )
+
     def nodes(self, nodes: Sequence[Node]) -> list[Any]:
         """Values of graph nodes."""
         return evaluate(nodes, self.leaves, self.arithmetic)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
 
@@ -35,11 +35,13 @@ PI: Rank = (Kind.CONSTANT, (0,), 0)
 class Order:
     """Rank of every symbol; a name that the model does not know ranks as an input, as first seen.
 
-    nonzero: names that an equation may be divided by.
+    nonzero: names that an equation may be divided by; accelerations: coordinate or speed -> the
+    name of its acceleration.
     """
 
     ranks: dict[str, Rank] = field(default_factory=dict)
     nonzero: frozenset[str] = frozenset()
+    accelerations: Mapping[str, str] = field(default_factory=dict)
 
     def rank(self, symbol: sp.Symbol) -> Rank:
         """The rank of a symbol."""
@@ -57,7 +59,9 @@ def of_model(model: Model) -> Order:
             ranks[symbol.name] = (kind, (place,), 0)
     for place, coordinate in enumerate(model.coordinates):
         ranks[virtual_name(coordinate.name)] = (Kind.VIRTUAL, (place,), 0)
-    return Order(ranks, frozenset(_nonzero(model)))
+    own = {c.name: c.acceleration.name for c in model.coordinates}
+    own |= {s.name: s.rate.name for s in model.speeds}
+    return Order(ranks, frozenset(_nonzero(model)), own)
 
 
 def _declared(model: Model) -> Iterator[tuple[Kind, Iterable[sp.Symbol]]]:

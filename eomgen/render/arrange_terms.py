@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import NamedTuple
@@ -38,14 +38,15 @@ class Factors:
     argument: Callable[[Factors, Form], Tree]  # what arranges the inside of a function
     ranks: list[Rank] = field(default_factory=list)
     trees: list[Tree] = field(default_factory=list)
-    by_key: dict[int | Ripple, int] = field(default_factory=dict)
+    by_key: dict[Hashable, int] = field(default_factory=dict)
+    ripples: dict[int, Ripple] = field(default_factory=dict)  # factor that is a sine -> its wave
     flipped: dict[Ripple, bool] = field(default_factory=dict)
     monomials: dict[Monomial, tuple[Powers, Powers, dict[Ripple, int]]] = field(
         default_factory=dict
     )
     squares: dict[int, Form] = field(default_factory=dict)  # factor that is a root -> its square
 
-    def add(self, key: int | Ripple, rank: Rank, tree: Tree) -> int:
+    def add(self, key: Hashable, rank: Rank, tree: Tree) -> int:
         """The number of a new factor."""
         self.by_key[key] = len(self.ranks)
         self.ranks.append(rank)
@@ -63,6 +64,20 @@ class Factors:
     def kind(self, factor: int) -> Kind:
         """What a factor is."""
         return self.ranks[factor][0]
+
+    def tangent(self, sine: int) -> tuple[int, int] | None:
+        """(cosine, tangent) of a sine's argument, if the factor is one whose cosine was met."""
+        ripple = self.ripples.get(sine)
+        cosine = self.by_key.get((False, ripple[1])) if ripple else None
+        if cosine is None:
+            return None
+        shown = self.trees[sine]
+        assert isinstance(shown, Function)
+        known = self.by_key.get(("tan", sine))
+        tangent = Function("tan", shown.arguments)
+        return cosine, self.add(
+            ("tan", sine), self.ranks[sine], tangent
+        ) if known is None else known
 
     def tree(self, powers: Powers) -> tuple[Tree, ...]:
         """Powers with positive exponents, as displayed."""
@@ -101,9 +116,7 @@ def _with_waves(
     return (factors.sort(parameters), factors.sort(motion)), number
 
 
-def _monomial(
-    factors: Factors, monomial: Monomial
-) -> tuple[Powers, Powers, dict[Ripple, int]]:
+def _monomial(factors: Factors, monomial: Monomial) -> tuple[Powers, Powers, dict[Ripple, int]]:
     """(parameters, motion, denominators that are a sine or a cosine)."""
     known = factors.monomials.get(monomial)
     if known is None:
@@ -191,4 +204,7 @@ def wave_factor(factors: Factors, ripple: Ripple) -> int:
     ranks = sorted({rank for ranks, _, _ in angles for rank in ranks})
     tree = Function("sin" if sine else "cos", (factors.argument(factors, argument),))
     factors.flipped[ripple] = sine and sign < 0
-    return factors.add(ripple, _function_rank(ranks, tie), tree)
+    factor = factors.add(ripple, _function_rank(ranks, tie), tree)
+    if sine:
+        factors.ripples[factor] = ripple
+    return factor

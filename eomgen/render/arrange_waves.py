@@ -97,9 +97,13 @@ def _bound(waves: Waves, units: Mapping[int, Fraction]) -> int:
 
 def _choices(count: int) -> Iterator[tuple[bool, ...]]:
     """For each angle whether sin^2 (True) or cos^2 is eliminated; all mixtures of a few angles."""
-    yield from product((True, False), repeat=count) if count <= 3 else (
-        (True,) * count,
-        (False,) * count,
+    yield from (
+        product((True, False), repeat=count)
+        if count <= 3
+        else (
+            (True,) * count,
+            (False,) * count,
+        )
     )
 
 
@@ -209,7 +213,8 @@ def _measure(spelling: Spelling) -> tuple[int, int, Fraction]:
     negative = sum(-e for powers in spelling for _, e in powers if e < 0)
     degrees = [{r: _degree(r) * abs(e) for r, e in powers} for powers in spelling]
     shared = sum(
-        min(d.get(ripple, Fraction(0)) for d in degrees) for ripple in (degrees[0] if degrees else ())
+        min(d.get(ripple, Fraction(0)) for d in degrees)
+        for ripple in (degrees[0] if degrees else ())
     )
     degree = sum((sum(d.values(), Fraction(0)) for d in degrees), Fraction(0))
     return negative, len(spelling), degree - shared * (len(spelling) - 1)

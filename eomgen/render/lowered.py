@@ -30,8 +30,9 @@ def lower(function: Function) -> Function:
     fresh = _fresh_names(function)
 
     def name(expression: Expression) -> Value:
-        statements.append(Assign(next(fresh), expression))
-        return Value(statements[-1].name)
+        value = Value(next(fresh))
+        statements.append(Assign(value.name, expression))
+        return value
 
     for statement in function.statements:
         lowered = _map(statement, lambda e: _without_powers(e, name))
@@ -87,6 +88,10 @@ def _without_powers(expression: Expression, name: Name) -> Expression:
                 return _power(base, int(exponent), name)
             if exponent.denominator == 2:
                 return _power(Apply("sqrt", (base,)), exponent.numerator, name)
+        case ("negate", (Apply("negate", (operand,)),)):
+            return operand
+        case ("negate", (Number(number),)):
+            return Number(-number)
     return Apply(expression.operator, changed)
 
 

@@ -1,5 +1,6 @@
 """Names that a target accepts: escaped where it reserves them, each once, by declaration."""
 
+import keyword
 from collections.abc import Iterable
 
 
@@ -26,3 +27,13 @@ def escaped(names: Iterable[str], reserved: Iterable[str]) -> tuple[str, ...]:
         taken.add(spelling)
         found.append(spelling)
     return tuple(found)
+
+
+def prefix(name: str) -> str:
+    """What the names of a program's C code begin with."""
+    return identifier(name)
+
+
+def module(name: str) -> str:
+    """The name of a program's Python module."""
+    return escaped([name], keyword.kwlist)[0]

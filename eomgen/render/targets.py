@@ -6,7 +6,8 @@ from typing import Any, Protocol
 
 import jinja2
 
-from eomgen.render import code
+from eomgen.render import code_context
+from eomgen.render.names import module
 from eomgen.render.templating import fill
 
 
@@ -35,12 +36,12 @@ TARGETS = {
     "c": Target(
         "C99 header and source",
         {"{name}.h": "c/model.h.j2", "{name}.c": "c/model.c.j2"},
-        code.c_context,
+        code_context.c,
     ),
     "python": Target(
         "Python module that needs NumPy only",
         {"{module}.py": "python/model.py.j2"},
-        code.python_context,
+        code_context.python,
     ),
 }
 
@@ -48,7 +49,7 @@ TARGETS = {
 def render(subject: Named, target: Target, templates: jinja2.Environment) -> dict[str, str]:
     """File name -> text. Pure: writing files is the command line's work."""
     context = target.context(subject)
-    names = {"name": subject.name, "module": code.prefix(subject.name)}
+    names = {"name": subject.name, "module": module(subject.name)}
     return {
         file.format(**names): fill(templates, template, context)
         for file, template in target.files.items()

@@ -1,4 +1,4 @@
-"""A formula as it is displayed: a small frozen tree, arranged already, for the printers to spell."""
+"""A formula as it is displayed: a small frozen tree, arranged already, for printers to spell."""
 
 from __future__ import annotations
 

@@ -34,9 +34,9 @@ def _initial(entry: Entry, scene: Scene) -> sp.Expr:
     assert isinstance(entry.value, Scalar)
     what = f"the initial value of '{entry.key.text}'"
     value = constant(entry.value, scene, _like(name, "initial value", what))
-    if name.order == 0 and scene.names[name.name].expressions[0].is_positive:
-        if value.is_positive is False:
-            raise Mistake(entry.value, "E508", f"'{name.name}' is declared positive")
+    positive = name.order == 0 and scene.names[name.name].expressions[0].is_positive
+    if positive and value.is_positive is False:
+        raise Mistake(entry.value, "E508", f"'{name.name}' is declared positive")
     return value
 
 
@@ -87,7 +87,7 @@ def _output(entry: Entry, scene: Scene) -> Output:
     unit_node = field(entry.value, "unit")
     unit = unit_of(unit_node, scene)
     known = Known("output", (), unit.dimension if unit else None, entry.key)
-    tree = tree_of(node)
+    tree = tree_of(node, scene)
     by = ((Name(name, 0, tree.span), 1),)
     formula = scalar(node, scene, Wanted("output", f"output '{name}'", NONE, by))
     scene.names[name] = known
@@ -105,7 +105,7 @@ def expectation(node: Node | None, scene: Scene) -> Expectation:
         if (found := field(node, key)) is not None
     }
     return Expectation(
-        int(dof.text) if dof is not None and len(dof.text) < 9 else None,
+        int(dof.text) if dof is not None else None,
         _equations(node.get("equations"), scene),
         _equilibria(node.get("equilibrium"), scene),
         _conserved(node.get("conserved"), scene),

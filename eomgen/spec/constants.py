@@ -93,7 +93,7 @@ def _check_positive(entry: Entry, scene: Scene) -> None:
     """A value must not contradict `positive: true`."""
     name = entry.key.text
     known = scene.values.get(name)
-    if text_of(field(entry.value, "positive")) == "true" and known is not None:
-        if known.expressions[0].is_positive is False:
-            node = field(entry.value, "value") or entry.key
-            raise Mistake(node, "E508", f"'{name}' is declared positive, but its value is not")
+    positive = text_of(field(entry.value, "positive")) == "true"
+    if positive and known is not None and known.expressions[0].is_positive is False:
+        node = field(entry.value, "value") or entry.key
+        raise Mistake(node, "E508", f"'{name}' is declared positive, but its value is not")

@@ -4,6 +4,7 @@ A measure is a known dimension times powers of names whose dimension nobody stat
 name is alone in an agreement its dimension follows; where it is not, the agreement says nothing.
 """
 
+from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -26,7 +27,7 @@ from eomgen.spec.syntax import (
 )
 
 ANGLE_FREE = ("abs", "min", "max")  # their result is like their arguments
-MOST_EXPONENT = 10**6
+MOST_EXPONENT = 64
 
 
 @dataclass(frozen=True)
@@ -159,17 +160,13 @@ def fixed(tree: Tree) -> Fraction | None:
         case Number(value, _):
             return value
         case Sum(terms, _):
-            found = [fixed(term) for _, term in terms]
-            signs = [sign for sign, _ in terms]
-            numbers = [n for n in found if n is not None]
-            return sum(map(_times, signs, numbers)) if len(numbers) == len(found) else None
+            numbers = [sign * n for sign, term in terms if (n := fixed(term)) is not None]
+            return sum(numbers, Fraction(0)) if len(numbers) == len(terms) else None
         case Product(factors, _):
             return _fixed_product(factors)
+        case Power(base, exponent, _):
+            return _fixed_power(fixed(base), fixed(exponent))
     return None
-
-
-def _times(sign: int, number: Fraction) -> Fraction:
-    return sign * number
 
 
 def _fixed_product(factors: tuple[tuple[int, Tree], ...]) -> Fraction | None:
@@ -180,6 +177,12 @@ def _fixed_product(factors: tuple[tuple[int, Tree], ...]) -> Fraction | None:
             return None
         result *= number**side
     return result
+
+
+def _fixed_power(base: Fraction | None, exponent: Fraction | None) -> Fraction | None:
+    if not base or exponent is None or exponent.denominator != 1 or abs(exponent) > MOST_EXPONENT:
+        return None
+    return base ** int(exponent)
 
 
 def agreements(statement: Statement, scene: Scene) -> Iterator[Agreement]:
@@ -207,22 +210,28 @@ def _terms(tree: Tree) -> tuple[Tree, ...]:
 def check(scene: Scene) -> dict[str, Dimension]:
     """The dimensions that follow from the formulas; every disagreement is entered."""
     met = [a for statement in scene.statements for a in agreements(statement, scene)]
-    found: dict[str, Dimension] = {}
-    while inferred := _infer(met, found):
-        found |= inferred
+    found = _infer(met)
     for agreement in met:
         scene.ledger.attempt(_compare, agreement, found)
     return found
 
 
-def _infer(met: list[Agreement], found: Mapping[str, Dimension]) -> dict[str, Dimension]:
-    """The first name that now follows from an agreement in which it is the only unknown."""
-    for agreement in met:
-        quotient = _known(agreement.first * agreement.second**-1, found)
+def _infer(met: list[Agreement]) -> dict[str, Dimension]:
+    """The names that follow from agreements in which they are, one by one, the only unknown."""
+    quotients = [a.first * a.second**-1 for a in met]
+    users: dict[str, list[Measure]] = {}
+    for quotient in quotients:
+        for name in quotient.unknown:
+            users.setdefault(name, []).append(quotient)
+    found: dict[str, Dimension] = {}
+    waiting = deque(quotients)
+    while waiting:
+        quotient = _known(waiting.popleft(), found)
         if len(quotient.unknown) == 1:
             ((name, power),) = quotient.unknown.items()
-            return {name: quotient.dimension ** (-1 / power)}
-    return {}
+            found[name] = quotient.dimension ** (-1 / power)
+            waiting.extend(users[name])
+    return found
 
 
 def _known(measure: Measure, found: Mapping[str, Dimension]) -> Measure:
@@ -241,12 +250,16 @@ def _compare(agreement: Agreement, found: Mapping[str, Dimension]) -> None:
     if quotient.unknown or quotient.dimension == NONE:
         return
     text, what = agreement.second_span.text, agreement.first_text
-    left, right = f"[{first.dimension}]", f"[{second.dimension}]"
+    left, right = _shown(first.dimension), _shown(second.dimension)
     code = "E403" if what.startswith("'") else "E404"
     raise Mistake(agreement.second_span, code, _words(what, left, text, right))
+
+
+def _shown(dimension: Dimension) -> str:
+    return "a plain number" if dimension == NONE else f"[{dimension}]"
 
 
 def _words(what: str, left: str, text: str, right: str) -> str:
     if what.startswith("'"):
         return f"{what} is {left} but '{text}' is {right}"
-    return f"'{text}' is {right} but {what} is {left}"
+    return f"'{text}' is {right} but {what} must be {left}"

@@ -17,9 +17,7 @@ from eomgen.spec.language import LANGUAGE
 from eomgen.spec.ledger import Ledger, Mistake
 from eomgen.spec.reader import Entry, Mapping, Point, Scalar, decode, lines_of, read_tree
 from eomgen.spec.scope import Scene
-from eomgen.spec.structure import conform
-
-DESCRIBED = ("parameters", "coordinates", "speeds", "prescribed", "inputs", "outputs")
+from eomgen.spec.structure import conform, is_missing
 
 
 def read(text: str | bytes, file: str) -> Model:
@@ -31,13 +29,13 @@ def read(text: str | bytes, file: str) -> Model:
     ledger.lines = lines_of(decoded)
     node = ledger.attempt(read_tree, decoded, ledger)
     root = conform(node, LANGUAGE, ledger) if node is not None else None
-    if not isinstance(root, Mapping):
-        ledger.close()
+    if not isinstance(root, Mapping) or root.get("space") is None:
+        ledger.close()  # without a space nothing is known of any vector
     assert isinstance(root, Mapping)
     assert isinstance(node, Mapping)
     found = _model(node, root, ledger)
     ledger.close()
-    digest = sha256(decoded.encode()).hexdigest()
+    digest = sha256(text if isinstance(text, bytes) else text.encode()).hexdigest()
     return replace(found, name=_identifier(file, found.title), digest=digest)
 
 
@@ -49,6 +47,7 @@ def _model(whole: Mapping, root: Mapping, ledger: Ledger) -> Model:
     space = root.get("space")
     scene = Scene(ledger, space.text if isinstance(space, Scalar) else "plane")
     scene.names = names.declare(whole, ledger)
+    scene.complete = names.are_complete(whole)
     known = Model("", _title(root), scene.space, (sp.S.Zero,) * scene.size)
     known = replace(
         known,
@@ -60,7 +59,7 @@ def _model(whole: Mapping, root: Mapping, ledger: Ledger) -> Model:
     )
     known = replace(
         known,
-        gravity=_gravity(root, scene),
+        gravity=_gravity(whole, root, scene),
         points=places.points(_entries(root, "points", scene), scene),
         bodies=places.bodies(_entries(root, "bodies", scene), scene),
         springs=loads.each(root.get("springs"), "spring", loads.spring, scene),
@@ -91,13 +90,23 @@ def _without_dimensions(known: Model) -> Model:
 
 
 def _described(known: Model, found: Map[str, Dimension | None]) -> Model:
+    """The model with each name's dimension in its description."""
+
     def described(records: tuple[Any, ...]) -> tuple[Any, ...]:
         return tuple(
             replace(r, description=replace(r.description, dimension=found.get(r.name)))
             for r in records
         )
 
-    return replace(known, **{key: described(getattr(known, key)) for key in DESCRIBED})
+    return replace(
+        known,
+        parameters=described(known.parameters),
+        coordinates=described(known.coordinates),
+        speeds=described(known.speeds),
+        prescribed=described(known.prescribed),
+        inputs=described(known.inputs),
+        outputs=described(known.outputs),
+    )
 
 
 def _table(root: Mapping, section: str) -> tuple[Entry, ...]:
@@ -121,19 +130,19 @@ def _title(root: Mapping) -> dict[str, str]:
     return {e.key.text: e.value.text for e in _table(root, "system") if isinstance(e.value, Scalar)}
 
 
-def _gravity(root: Mapping, scene: Scene) -> tuple[sp.Expr, ...]:
+def _gravity(whole: Mapping, root: Mapping, scene: Scene) -> tuple[sp.Expr, ...]:
     node = root.get("gravity")
     zeros = (sp.S.Zero,) * scene.size
     if node is not None:
         return scene.ledger.attempt(loads.gravity, node, scene) or zeros
-    if root.get("bodies") is not None:
+    if root.get("bodies") is not None and is_missing("gravity", whole, LANGUAGE.keys):
         message = "missing key 'gravity': there are bodies"
         hint = "there is no default; write 'gravity: 0' for none"
         scene.ledger.note(Mistake(Point(root.line, root.column), "E110", message, hint))
     return zeros
 
 
-def _identifier(file: str, title: dict[str, str]) -> str:
+def _identifier(file: str, title: Map[str, str]) -> str:
     """A name for generated code: the file's stem, or the title where there is no file."""
     stem = PurePath(file).stem
     word = stem if re.search("[A-Za-z]", stem) else next(iter(title.values()), "").lower()

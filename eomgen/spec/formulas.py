@@ -7,21 +7,35 @@ import sympy as sp
 from eomgen.dimension import NONE
 from eomgen.model import Description
 from eomgen.spec import lower, units
-from eomgen.spec.formula import parse, parse_relation
+from eomgen.spec.formula import NAME, parse, parse_relation
 from eomgen.spec.ledger import Mistake
 from eomgen.spec.reader import Mapping, Node, Scalar, Sequence
 from eomgen.spec.scope import Known, Scene, Statement, Wanted
-from eomgen.spec.syntax import Relation, Span, Tree, Vector, names
+from eomgen.spec.syntax import Quantity, Relation, Span, Tree, Vector, names
 
 
-def tree_of(node: Node) -> Tree:
-    """The syntax tree of a formula or of a list of formulas."""
+def tree_of(node: Node, scene: Scene) -> Tree:
+    """The syntax tree of a formula, of a list of formulas, or of a number with its unit."""
     if isinstance(node, Sequence):
-        items = tuple(tree_of(item) for item in node.items)
+        items = tuple(tree_of(item, scene) for item in node.items)
         text = f"[{', '.join(item.span.text for item in items)}]"
         return Vector(items, Span(node.line, node.column, text))
     assert isinstance(node, Scalar)
-    return parse(node)
+    return _lone_quantity(node, scene) or parse(node)
+
+
+def _lone_quantity(node: Scalar, scene: Scene) -> Quantity | None:
+    """`30 deg` in the place of a formula; not `2 m` where a name m could be meant."""
+    match = units.QUANTITY.fullmatch(node.text)
+    if match is None or match["unit"] is None:
+        return None
+    words = NAME.findall(match["unit"])
+    if any(word not in units.UNITS or word in scene.names for word in words):
+        return None
+    found = units.quantity(node)
+    if found is not None:
+        scene.units_seen = scene.units_seen or found.dimension != NONE
+    return found
 
 
 def quantity_tree(node: Scalar, scene: Scene) -> Tree:
@@ -35,7 +49,7 @@ def quantity_tree(node: Scalar, scene: Scene) -> Tree:
 
 def scalar(node: Node, scene: Scene, wanted: Wanted) -> sp.Expr:
     """The expression of a scalar formula, which is kept for the dimension check."""
-    return scalar_tree(tree_of(node), scene, wanted)
+    return scalar_tree(tree_of(node, scene), scene, wanted)
 
 
 def scalar_tree(tree: Tree, scene: Scene, wanted: Wanted) -> sp.Expr:
@@ -47,7 +61,7 @@ def scalar_tree(tree: Tree, scene: Scene, wanted: Wanted) -> sp.Expr:
 
 def vector(node: Node, scene: Scene, wanted: Wanted) -> lower.Affine:
     """The vector or place of a formula, which is kept for the dimension check."""
-    tree = tree_of(node)
+    tree = tree_of(node, scene)
     result = lower.vector(tree, lower.Lowering(scene, wanted.use, wanted.local))
     scene.statements.append(Statement(tree, wanted))
     return result

@@ -24,7 +24,7 @@ def inertia(name: str, node: Node, scene: Scene) -> tuple[sp.Expr, ...]:
     entries = [
         scalar(n, scene, Wanted("inertia", what, INERTIA)) if n else sp.S.Zero for n in nodes
     ]
-    values = [value_of(tree_of(n), scene) if n else sp.S.Zero for n in nodes]
+    values = [value_of(tree_of(n, scene), scene) if n else sp.S.Zero for n in nodes]
     if len(entries) == 9:
         _check_symmetric(entries, node, what)
     if all(value is not None for value in values):

@@ -6,6 +6,7 @@ from typing import ParamSpec, Protocol, TypeVar
 
 from eomgen.errors import Fault, Location, SpecError
 
+CONSEQUENCE = ""  # the code of what is wrong because something else is, which has its own fault
 MOST_FAULTS = 100  # nobody reads more, and a hostile file could ask for millions
 
 Result = TypeVar("Result")
@@ -40,7 +41,9 @@ class Ledger:
         self.faults: list[Fault] = []
 
     def note(self, mistake: Mistake) -> None:
-        """Enter one fault, unless the book is full."""
+        """Enter one fault, unless it only follows from another or the book is full."""
+        if mistake.code == CONSEQUENCE:
+            return
         line, column = mistake.spot.line, mistake.spot.column
         source = self.lines[line - 1] if line <= len(self.lines) else ""
         fault = Fault(

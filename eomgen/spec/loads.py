@@ -8,11 +8,11 @@ import sympy as sp
 from eomgen.dimension import ENERGY, FORCE, LENGTH, NONE, TIME, Dimension
 from eomgen.model import Damper, Energy, Force, Moment, Spring
 from eomgen.spec.formulas import scalar, tree_of, vector
-from eomgen.spec.ledger import Mistake
+from eomgen.spec.ledger import CONSEQUENCE, Mistake
 from eomgen.spec.places import body_name, pair, place_name
 from eomgen.spec.reader import Entry, Mapping, Node, Scalar, Sequence
 from eomgen.spec.scope import Local, Scene, Wanted
-from eomgen.spec.syntax import Tree
+from eomgen.spec.syntax import Tree, names
 
 Load = TypeVar("Load")
 By = tuple[tuple[Tree, int], ...]
@@ -96,7 +96,10 @@ def _path(
         return pair(_node(keys, "between"), scene), None, ()
     node = _node(keys, "along")
     formula = scalar(node, scene, Wanted("elongation", f"the elongation of {name}"))
-    return None, formula, ((tree_of(node), 1),)
+    tree = tree_of(node, scene)
+    if all(scene.names[n.name].kind != "coordinate" for n in names(tree)):
+        raise Mistake(node, "E510", f"'{tree.span.text}' moves with no coordinate")
+    return None, formula, ((tree, 1),)
 
 
 def _free_length(name: str, keys: Mapping, wanted: Wanted, scene: Scene) -> sp.Expr:
@@ -104,7 +107,8 @@ def _free_length(name: str, keys: Mapping, wanted: Wanted, scene: Scene) -> sp.E
     node = keys.get("free_length")
     if node is None and keys.get("between") is not None:
         hint = "0 for a spring that is slack at length zero"
-        raise Mistake(keys, "E110", f"missing key 'free_length' in {name}", hint)
+        code = "E110" if keys.whole else CONSEQUENCE
+        raise Mistake(keys, code, f"missing key 'free_length' in {name}", hint)
     if node is None:
         return sp.S.Zero
     what = f"the free length of {name}"
@@ -116,9 +120,10 @@ def _only(name: str, keys: Mapping, choices: tuple[str, ...]) -> str:
     given = [key for key in choices if keys.get(key) is not None]
     if len(given) == 1:
         return given[0]
+    code = "E112" if keys.whole else CONSEQUENCE
     options = " or ".join(f"'{choice}'" for choice in choices)
     found = f"it has {' and '.join(given)}" if given else "it has none"
-    raise Mistake(keys, "E112", f"{name} needs {options}, {found}")
+    raise Mistake(keys, code, f"{name} needs {options}, {found}")
 
 
 def _node(keys: Mapping, name: str) -> Node:

@@ -44,7 +44,7 @@ class Lowering:
 def scalar(tree: Tree, where: Lowering) -> sp.Expr:
     """The expression of a scalar formula; raises `Mistake` at the offending term."""
     result = _scalar(tree, where)
-    if result in NOT_FINITE or result.has(*NOT_FINITE, sp.I):
+    if result.has(*NOT_FINITE, sp.I) or (result.is_number and result.is_extended_real is False):
         raise Mistake(tree.span, "E203", f"'{tree.span.text}' has no finite real value")
     if isinstance(result, sp.Rational) and _bits(result) > MOST_BITS:
         raise Mistake(tree.span, "E202", "the number is too large")

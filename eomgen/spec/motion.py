@@ -23,11 +23,12 @@ def coordinates(entries: tuple[Entry, ...], scene: Scene) -> tuple[Coordinate, .
 def _coordinate(entry: Entry, scene: Scene) -> Coordinate:
     role = field(entry.value, "role")
     if role is not None and role.text == "linked":
-        message = "not supported yet: linked coordinates, which belong to constraints"
+        message = "not supported yet: linked coordinates, which need constraints"
         raise Mistake(role, "E603", message, "use free coordinates")
     described, known = _described(entry, scene)
     positive = text_of(field(entry.value, "positive")) == "true"
-    return Coordinate(entry.key.text, *known.expressions, described, positive=positive)
+    value, rate, acceleration = known.expressions
+    return Coordinate(entry.key.text, value, rate, acceleration, described, positive=positive)
 
 
 def _described(entry: Entry, scene: Scene) -> tuple[Description, Known]:
@@ -66,7 +67,8 @@ def prescribed(entries: tuple[Entry, ...], scene: Scene) -> tuple[Prescribed, ..
 
 def _prescribed(entry: Entry, scene: Scene) -> Prescribed:
     described, known, formula = _defined(entry, scene, "prescribed motion")
-    return Prescribed(entry.key.text, *known.expressions, formula, described)
+    value, rate, acceleration = known.expressions
+    return Prescribed(entry.key.text, value, rate, acceleration, formula, described)
 
 
 def speeds(entries: tuple[Entry, ...], scene: Scene) -> tuple[Speed, ...]:
@@ -86,11 +88,12 @@ def speeds(entries: tuple[Entry, ...], scene: Scene) -> tuple[Speed, ...]:
 
 def _speed(entry: Entry, scene: Scene) -> Speed:
     described, known, formula = _defined(entry, scene, "speed")
-    tree = tree_of(_formula_node(entry) or entry.value)
+    tree = tree_of(_formula_node(entry) or entry.value, scene)
     if _degree(tree, scene) != 1:
         message = f"speed '{entry.key.text}' must be linear in the rates"
         raise Mistake(tree.span, "E506", message)
-    return Speed(entry.key.text, *known.expressions, formula, described)
+    value, rate = known.expressions
+    return Speed(entry.key.text, value, rate, formula, described)
 
 
 def _defined(entry: Entry, scene: Scene, use: str) -> tuple[Description, Known, sp.Expr]:
@@ -101,7 +104,7 @@ def _defined(entry: Entry, scene: Scene, use: str) -> tuple[Description, Known, 
         described, known = description(entry.value), scene.names[name]
     else:
         described, known = _described(entry, scene)
-    tree = tree_of(node or entry.value)
+    tree = tree_of(node or entry.value, scene)
     wanted = Wanted(use, f"'{name}'", NONE, ((Name(name, 0, tree.span), 1),))
     return described, known, scalar_tree(tree, scene, wanted)
 

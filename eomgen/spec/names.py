@@ -6,6 +6,7 @@ from eomgen.dimension import LENGTH, NONE, TIME
 from eomgen.model import TIME as T
 from eomgen.spec.formula import NAME, RESERVED
 from eomgen.spec.formulas import field, text_of
+from eomgen.spec.language import LANGUAGE
 from eomgen.spec.ledger import Ledger, Mistake, shown
 from eomgen.spec.reader import Mapping, Node, Scalar
 from eomgen.spec.scope import PRIMES, Known
@@ -36,6 +37,14 @@ def declare(root: Mapping, ledger: Ledger) -> dict[str, Known]:
             if ledger.attempt(check, entry.key, names) is not None:
                 names[entry.key.text] = known
     return names
+
+
+def are_complete(root: Mapping) -> bool:
+    """Whether every name that the author meant could be declared."""
+    known = all(entry.key.text in LANGUAGE.keys for entry in root.entries)
+    tables = [root.get(section) for section in KINDS]
+    shaped = all(table is None or isinstance(table, Mapping) for table in tables)
+    return known and shaped and root.get("coordinates") is not None
 
 
 def check(key: Scalar, names: dict[str, Known]) -> Scalar:

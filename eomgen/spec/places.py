@@ -6,7 +6,7 @@ from eomgen.dimension import LENGTH, MASS, NONE
 from eomgen.model import Body, Frame, Place, Point, Turn
 from eomgen.spec import inertias
 from eomgen.spec.formulas import description, scalar, tree_of, value_of, vector
-from eomgen.spec.ledger import Mistake, shown, suggestion
+from eomgen.spec.ledger import CONSEQUENCE, Mistake, shown, suggestion
 from eomgen.spec.reader import Entry, Mapping, Node, Scalar, Sequence
 from eomgen.spec.scope import Scene, Wanted
 
@@ -61,7 +61,8 @@ def _name(node: Node, scene: Scene, kinds: tuple[str, ...]) -> str:
     if known is None:
         fitting = [n for n, k in scene.names.items() if k.kind in kinds]
         message = f"unknown {what} {shown(node.text)}"
-        raise Mistake(node, "E301", message, suggestion(node.text, fitting))
+        code = "E301" if scene.complete else CONSEQUENCE
+        raise Mistake(node, code, message, suggestion(node.text, fitting))
     if known.kind not in kinds:
         raise Mistake(node, "E306", f"'{node.text}' is a {known.kind}, a {what} is needed here")
     return node.text
@@ -96,7 +97,7 @@ def _body(entry: Entry, scene: Scene) -> Body | None:
     attempt(_check_keys, entry.key, keys, scene)
     mass = attempt(_mass, name, _required(keys, "mass"), scene)
     placed = attempt(_placed, name, keys, scene)
-    node = keys.get("inertia")
+    node = keys.get("inertia") if scene.space != "line" else None
     inertia = attempt(inertias.inertia, name, node, scene) if node is not None else ()
     if mass is None or placed is None or inertia is None:
         return None
@@ -110,7 +111,7 @@ def _check_keys(name: Scalar, keys: Mapping, scene: Scene) -> None:
     if len(given) != 1:
         found = f", not {' and '.join(given)}" if given else ""
         message = f"body '{name.text}' is placed by one of 'at', 'rod', 'frame'{found}"
-        raise Mistake(name, "E112", message)
+        raise Mistake(name, "E112" if keys.whole else CONSEQUENCE, message)
     for entry in keys.entries:
         if entry.key.text in EXCLUDED[given[0]]:
             message = f"'{entry.key.text}' does not go with '{given[0]}'"
@@ -122,7 +123,7 @@ def _check_keys(name: Scalar, keys: Mapping, scene: Scene) -> None:
 
 def _mass(name: str, node: Node, scene: Scene) -> sp.Expr:
     mass = scalar(node, scene, Wanted("mass", f"the mass of '{name}'", MASS))
-    value = value_of(tree_of(node), scene)
+    value = value_of(tree_of(node, scene), scene)
     if value is not None and value.is_negative:
         raise Mistake(node, "E504", f"the mass of '{name}' is negative")
     return mass

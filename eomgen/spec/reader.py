@@ -16,6 +16,12 @@ MOST_BYTES = 256 * 1024
 MOST_DEPTH = 40
 MOST_NODES = 20_000
 
+SYNTAX_HINTS = {  # word in the message -> remedy
+    "\\t": "indent with spaces",
+    "end of stream": "close the quote or bracket",
+    "flow": "inside { } and [ ] put a formula that holds , : [ or # in quotes",
+    "mapping values": "put a text that holds ': ' in quotes",
+}
 LINE_BREAK = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
 UNPRINTABLE = re.compile(
     "[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
@@ -52,11 +58,12 @@ class Entry:
 
 @dataclass(frozen=True)
 class Mapping:
-    """Entries in the order of the file, every key once."""
+    """Entries in the order of the file, every key once; `whole`: none was wrong and left out."""
 
     entries: tuple[Entry, ...]
     line: int
     column: int
+    whole: bool = True
 
     def get(self, name: str) -> "Node | None":
         """The value of a key, or None."""
@@ -127,12 +134,11 @@ def _syntax_mistake(text: str, error: yaml.MarkedYAMLError) -> Mistake:
             pass
     except yaml.MarkedYAMLError as better:
         error = better
-    mark = error.problem_mark or error.context_mark
+    unended = "end of stream" in str(error.problem)
+    mark = (error.context_mark if unended else None) or error.problem_mark
     spot = Point(mark.line + 1, mark.column + 1) if mark else Point(1, 1)
     message = "; ".join(part for part in (error.context, error.problem) if part)
-    hint = "put a formula that holds ',' ': ' '[' or '#' in quotes when it stands inside { } or [ ]"
-    if "\\t" in message:
-        hint = "indent with spaces"
+    hint = next((h for word, h in SYNTAX_HINTS.items() if word in message), "")
     return Mistake(spot, "E103", f"not YAML: {message}", hint)
 
 
@@ -166,6 +172,7 @@ class _Tree:
 
     def take(self, event: yaml.Event) -> None:
         """Work one event into the tree."""
+        assert event.start_mark is not None
         spot = Point(event.start_mark.line + 1, event.start_mark.column + 1)
         if isinstance(event, yaml.DocumentStartEvent):
             self.start_document(spot)

@@ -7,7 +7,7 @@ import sympy as sp
 
 from eomgen import model
 from eomgen.dimension import Dimension
-from eomgen.spec.ledger import Ledger, Mistake, suggestion
+from eomgen.spec.ledger import CONSEQUENCE, Ledger, Mistake, suggestion
 from eomgen.spec.reader import Scalar
 from eomgen.spec.syntax import Name, Relation, Tree
 
@@ -103,6 +103,7 @@ class Scene:
     statements: list[Statement] = field(default_factory=list)
     values: dict[str, Known] = field(default_factory=dict)  # of the parameters that have one
     units_seen: bool = False
+    complete: bool = True  # False: names are missing because a whole section is wrong
 
     @property
     def size(self) -> int:
@@ -118,7 +119,7 @@ def resolve(name: Name, scene: Scene, use: str, local: Local | None = None) -> K
     if known is None:
         raise Mistake(
             name.span,
-            "E301",
+            "E301" if scene.complete else CONSEQUENCE,
             f"unknown name '{name.name}'",
             suggestion(name.name, usable(scene.names, use)),
         )

@@ -1,15 +1,20 @@
 """Node tree against the language table: every wrong key or shape is entered, the rest is kept."""
 
+import re
+from collections.abc import Mapping as Map
+from difflib import get_close_matches
+
 from eomgen.spec.language import Either, Form, Items, Key, Leaf, Record, Table
-from eomgen.spec.ledger import Ledger, Mistake, Spot, shown, suggestion
+from eomgen.spec.ledger import Ledger, Mistake, shown, suggestion
 from eomgen.spec.reader import Entry, Mapping, Node, Scalar, Sequence
 
 SHAPES = {Leaf: Scalar, Items: Sequence, Table: Mapping, Record: Mapping}
 WORDS = {Leaf: "a text", Items: "a list", Table: "a map of names", Record: "a map of keys"}
 UNSUPPORTED = {  # path below the top -> code and what is meant
     ("constraints",): ("E601", "constraints"),
-    ("initial", "guess"): ("E604", "'guess', which belongs to constraints,"),
+    ("initial", "guess"): ("E604", "'guess', a key for constraints"),
 }
+WHOLE = re.compile("[0-9]{1,6}")
 MAY_BE_EMPTY = ("quantity", "unit")  # a parameter without value, a coordinate without unit
 
 
@@ -26,7 +31,8 @@ def conform(node: Node, form: Form, ledger: Ledger, path: tuple[str, ...] = ()) 
             return _table(node, inner, ledger, path)
         case Record(keys) if isinstance(node, Mapping):
             return _record(node, dict(keys), ledger, path)
-    return _wrong_shape(node, (form,), ledger, path)
+    _note_shape(node, (form,), ledger, path)
+    return None
 
 
 def _either(
@@ -34,13 +40,12 @@ def _either(
 ) -> Node | None:
     fitting = next((f for f in forms if isinstance(node, SHAPES[type(f)])), None)
     if fitting is None:
-        return _wrong_shape(node, forms, ledger, path)
+        _note_shape(node, forms, ledger, path)
+        return None
     return conform(node, fitting, ledger, path)
 
 
-def _wrong_shape(
-    node: Node, forms: tuple[Form, ...], ledger: Ledger, path: tuple[str, ...]
-) -> None:
+def _note_shape(node: Node, forms: tuple[Form, ...], ledger: Ledger, path: tuple[str, ...]) -> None:
     wanted = " or ".join(dict.fromkeys(WORDS[type(f)] for f in forms))
     found = {Scalar: "a text", Sequence: "a list", Mapping: "a map"}[type(node)]
     if isinstance(node, Scalar) and not node.text:
@@ -57,7 +62,7 @@ def _leaf(node: Scalar, form: Leaf, path: tuple[str, ...]) -> Scalar:
         raise Mistake(node, "E111", f"{shown(node.text)} is no value of {_named(path)}", hint)
     if form.kind == "boolean" and node.text not in ("true", "false"):
         raise Mistake(node, "E111", f"{_named(path)} is true or false, not {shown(node.text)}")
-    if form.kind == "integer" and not (node.text.isascii() and node.text.isdigit()):
+    if form.kind == "integer" and not WHOLE.fullmatch(node.text):
         raise Mistake(node, "E111", f"{_named(path)} is a whole number, not {shown(node.text)}")
     return node
 
@@ -104,17 +109,24 @@ def _record(
             entries.append(Entry(entry.key, value))
     _note_missing(node, keys, ledger, path)
     whole = all(name in {e.key.text for e in entries} for name, k in keys.items() if k.required)
-    return Mapping(tuple(entries), node.line, node.column) if whole or not path else None
+    sound = len(entries) == len(node.entries)
+    return Mapping(tuple(entries), node.line, node.column, sound) if whole or not path else None
 
 
 def _note_missing(
     node: Mapping, keys: dict[str, Key], ledger: Ledger, path: tuple[str, ...]
 ) -> None:
-    given = {entry.key.text for entry in node.entries}
     for name, key in keys.items():
-        if key.required and name not in given:
+        if key.required and is_missing(name, node, keys):
             where = f" in {path[-1]}" if path else ""
             ledger.note(Mistake(node, "E110", f"missing key '{name}'{where}", key.about))
+
+
+def is_missing(name: str, node: Mapping, keys: Map[str, Key]) -> bool:
+    """Whether a key is not there, not even misspelt."""
+    given = {entry.key.text for entry in node.entries}
+    astray = [word[:60] for word in given if word not in keys]
+    return name not in given and not get_close_matches(name, astray, 1, 0.6)
 
 
 def _refused_for_now(entry: Entry, ledger: Ledger, path: tuple[str, ...]) -> bool:
@@ -129,8 +141,3 @@ def _refused_for_now(entry: Entry, ledger: Ledger, path: tuple[str, ...]) -> boo
 
 def _named(path: tuple[str, ...]) -> str:
     return f"'{'.'.join(path)}'" if path else "a spec"
-
-
-def where(spot: Spot) -> str:
-    """`line 12`, for a second place in a message."""
-    return f"line {spot.line}"

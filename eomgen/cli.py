@@ -1,0 +1,263 @@
+"""The command line: reads files, calls, writes files; no mathematics.
+
+What a command needs is imported when it runs, so that help answers at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from eomgen import files
+from eomgen.errors import EomgenError, SpecError, UsageError
+
+if TYPE_CHECKING:
+    from eomgen.study import Study
+
+SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
+FORMATS = click.Choice(["text", "json", "github"])
+LANGUAGES = click.Choice(["en", "es"])
+TARGET_NAMES = ("latex", "c", "python", "text")
+
+EXAMPLES = """\b
+Examples:
+  eomgen derive specs/slider_pendulum.yaml
+  eomgen generate specs/slider_pendulum.yaml -o out
+  eomgen check specs/*.yaml
+  eomgen new my_system
+
+\b
+Exit codes: 0 done, 1 a check failed, 2 wrong input."""
+
+
+def _epilog(*lines: str) -> str:
+    return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
+
+
+spec_argument = click.argument("spec", type=str)
+language_option = click.option(
+    "--lang", "language", type=LANGUAGES, default="en", show_default=True, help="Language of prose."
+)
+format_option = click.option(
+    "--format", "format_", type=FORMATS, default="text", show_default=True, help="How faults look."
+)
+templates_option = click.option(
+    "--templates", type=click.Path(path_type=Path), help="Folder of your own templates."
+)
+
+
+@click.group(context_settings=SETTINGS, epilog=EXAMPLES)
+@click.version_option(package_name="eomgen", prog_name="eomgen")
+def commands() -> None:
+    """Equations of motion from one text file: lecture notes, C and Python, proven to agree."""
+
+
+@commands.command(epilog=_epilog("eomgen derive pendulum.yaml --steps", "eomgen derive - <p.yaml"))
+@spec_argument
+@click.option("--steps", is_flag=True, help="Show every partial derivative.")
+@language_option
+@templates_option
+@format_option
+def derive(spec: str, steps: bool, language: str, templates: Path | None, format_: str) -> None:
+    """Show the equations of motion of SPEC in the terminal."""
+    from eomgen.outputs import Wish, rendered
+
+    wish = Wish(("text",), language, templates, steps)
+    (text,) = rendered(_study(spec, format_), wish).values()
+    click.echo(text, nl=False)
+
+
+@commands.command(
+    epilog=_epilog("eomgen generate arm.yaml -o out", "eomgen generate arm.yaml -t python -o -")
+)
+@spec_argument
+@click.option("-o", "--output", default=".", show_default=True, help="Folder; - is stdout.")
+@click.option(
+    "-t",
+    "--target",
+    "targets",
+    multiple=True,
+    type=click.Choice(TARGET_NAMES),
+    help="What to write, repeatable.  [default: latex, c and python]",
+)
+@click.option("--steps/--no-steps", default=True, help="Partial derivatives in the notes.")
+@click.option("--force", is_flag=True, help="Overwrite files that eomgen did not make.")
+@language_option
+@templates_option
+@format_option
+def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -> None:
+    """Write lecture notes, C and Python for SPEC."""
+    from eomgen.outputs import Wish, rendered
+
+    targets = wishes["targets"] or ("latex", "c", "python")
+    wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"])
+    made = rendered(_study(spec, format_), wish)
+    if output == files.STANDARD:
+        _print_files(made)
+        return
+    for path in files.write_all(Path(output), made, force=force):
+        click.echo(str(path))
+
+
+def _print_files(made: dict[str, str]) -> None:
+    """Several files on one stream are told apart by a line each."""
+    for name, text in made.items():
+        if len(made) > 1:
+            click.echo(f"==> {name} <==")
+        click.echo(text, nl=False)
+
+
+@commands.command(epilog=_epilog("eomgen check specs/*.yaml", "eomgen check a.yaml --format json"))
+@click.argument("specs", nargs=-1, required=True)
+@format_option
+def check(specs: tuple[str, ...], format_: str) -> None:
+    """Check SPECS: language, names, units, degrees of freedom, claims, and the proof."""
+    from eomgen.outputs import summary
+
+    worst = 0
+    for spec in specs:
+        try:
+            click.echo(summary(spec, _derived(spec), format_))
+        except EomgenError as error:
+            _complain(error, format_, files.shown(spec))
+            worst = max(worst, error.exit_code)
+    sys.exit(worst)
+
+
+@commands.command(
+    epilog=_epilog("eomgen evaluate arm.yaml --state state.json --digits 50 --using interpreter")
+)
+@spec_argument
+@click.option("--state", default=None, help="JSON file of states; - is stdin.")
+@click.option("--digits", type=click.IntRange(1, 10_000), default=17, show_default=True)
+@click.option(
+    "--using",
+    type=click.Choice(["interpreter", "c", "python"]),
+    default="interpreter",
+    show_default=True,
+    help="What computes.",
+)
+@format_option
+def evaluate(spec: str, state: str | None, digits: int, using: str, format_: str) -> None:
+    """Compute accelerations, energies, forces and outputs of SPEC at given states, as JSON.
+
+    Without --state the spec's initial values are the state.
+    """
+    import json
+
+    from eomgen import states
+    from eomgen.evaluate import depends_on_time
+    from eomgen.evaluate import evaluate as values
+
+    if spec == state == files.STANDARD:
+        raise UsageError("the spec and the state cannot both come from standard input")
+    study = _study(spec, format_)
+    text = "{}" if state is None else _decoded(state)
+    found = states.read(text, study.model, needs_time=depends_on_time(study.program))
+    results = values(study.machine, study.program, found, using, digits)
+    click.echo(json.dumps(results, indent=2, ensure_ascii=False))
+
+
+def _decoded(path: str) -> str:
+    try:
+        return files.read(path).decode()
+    except UnicodeDecodeError as error:
+        raise UsageError(f"{path}: not UTF-8 text (byte {error.start})") from error
+
+
+@commands.command(epilog=_epilog("eomgen new my_system", "eomgen new crane --like furuta_pendulum"))
+@click.argument("name")
+@click.option("--like", default="slider_pendulum", show_default=True, help="Example to start from.")
+def new(name: str, like: str) -> None:
+    """Start the spec NAME.yaml from an example, with the schema that editors complete from."""
+    from eomgen import shelf
+
+    for path in shelf.start(name, like):
+        click.echo(str(path))
+
+
+@commands.command(epilog=_epilog("eomgen examples", "eomgen examples copy furuta_pendulum"))
+@click.argument("action", type=click.Choice(["list", "copy"]), default="list")
+@click.argument("names", nargs=-1)
+@click.option("-o", "--output", type=click.Path(path_type=Path), default=Path(), help="Folder.")
+def examples(action: str, names: tuple[str, ...], output: Path) -> None:
+    """List the shipped specs, or copy some (all without NAMES)."""
+    from eomgen import shelf
+
+    if action == "list":
+        for stem, title in shelf.examples().items():
+            click.echo(f"{stem:<28} {title}")
+        return
+    for path in shelf.copy_examples(names, output):
+        click.echo(str(path))
+
+
+@commands.command(epilog=_epilog("eomgen schema > eomgen.schema.json"))
+def schema() -> None:
+    """Print the JSON Schema of the language, for editors."""
+    from eomgen import shelf
+
+    click.echo(shelf.schema_text(), nl=False)
+
+
+@commands.command(epilog=_epilog("eomgen templates", "eomgen templates eject c/model.c.j2 -o mine"))
+@click.argument("action", type=click.Choice(["list", "eject"]), default="list")
+@click.argument("names", nargs=-1)
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), default=Path("templates"), help="Folder."
+)
+def templates(action: str, names: tuple[str, ...], output: Path) -> None:
+    """List the templates, or copy some (all without NAMES) as a start for --templates."""
+    from eomgen import shelf
+
+    if action == "list":
+        for name in shelf.templates():
+            click.echo(name)
+        return
+    for path in shelf.eject_templates(names, output):
+        click.echo(str(path))
+
+
+def _study(spec: str, format_: str) -> Study:
+    """The study of a spec; its faults are shown as asked and end the command."""
+    try:
+        return _derived(spec)
+    except EomgenError as error:
+        _complain(error, format_, files.shown(spec))
+        sys.exit(error.exit_code)
+
+
+def _derived(spec: str) -> Study:
+    text = files.read(spec)
+    from eomgen import study
+
+    return study.of_text(text, files.shown(spec))
+
+
+def _complain(error: EomgenError, format_: str, source: str) -> None:
+    """The error on standard error: faults with their places, or one line for each mistake."""
+    if isinstance(error, SpecError):
+        from eomgen.spec.report import render
+
+        click.echo(render(error.faults, format_), err=True)
+        return
+    from eomgen.outputs import complaint
+
+    click.echo(complaint(error, format_, source), err=True)
+
+
+def main() -> NoReturn:
+    """The program: a user's mistake is shown in words, a defect of ours with its traceback."""
+    try:
+        commands(prog_name="eomgen")
+    except EomgenError as error:
+        click.echo(f"eomgen: {error}", err=True)
+        sys.exit(error.exit_code)
+    sys.exit(0)
+
+
+if __name__ == "__main__":
+    main()

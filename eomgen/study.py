@@ -1,0 +1,75 @@
+"""The one-page compiler: spec text -> model -> two derivations -> checks -> program.
+
+text ─ spec.read ─► Model ─┬─ lagrange.derive ─► Derivation (closed form) ─┐
+                           └─ compile.machine_of ─► Machine (graph) ───────┴─ checks ─► Report
+                                                       └─ compile.program ─► Program
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from eomgen import compile
+from eomgen.checks import agreement, dimensions, expectations, power, samples
+from eomgen.mechanics import lagrange
+from eomgen.mechanics.equations import Derivation
+from eomgen.model import Model
+from eomgen.program import Program
+from eomgen.spec import read
+
+
+@dataclass(frozen=True)
+class Report:
+    """What was checked, and how well it held."""
+
+    agreement: agreement.Agreement
+    power: float  # worst relative error of the power balance
+    terms: int  # whose dimension was checked; 0 where the spec states no units
+    claims: int  # of the author, all found to hold
+    projected: bool  # bodies were projected; else both routes start from the author's energies
+
+
+@dataclass(frozen=True)
+class Study:
+    """A scene that was derived twice and found consistent."""
+
+    model: Model
+    derivation: Derivation
+    machine: compile.Machine
+    program: Program
+    report: Report
+
+
+def of_text(text: str | bytes, file: str) -> Study:
+    """The study of a spec.
+
+    Raises:
+        SpecError: the spec has mistakes, all are listed.
+        UsageError: the scene cannot be derived as it is described.
+        CheckError: something derived would not be true; nothing may be printed.
+    """
+    return of_model(read(text, file))
+
+
+def of_model(model: Model) -> Study:
+    """The study of a model; raises as `of_text`."""
+    derivation = lagrange.derive(model)
+    machine = compile.machine_of(model)
+    report = checked(derivation, machine)
+    return Study(model, derivation, machine, compile.program(machine), report)
+
+
+def checked(derivation: Derivation, machine: compile.Machine) -> Report:
+    """The report of everything that is checked.
+
+    Raises:
+        CheckError: one of the checks fails.
+    """
+    drawn = samples.draw(derivation.model)
+    return Report(
+        terms=dimensions.check(derivation),
+        agreement=agreement.compare(derivation, machine, drawn),
+        power=power.balance(machine, drawn),
+        claims=expectations.check(machine, drawn),
+        projected=bool(derivation.model.bodies),
+    )
