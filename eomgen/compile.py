@@ -19,6 +19,7 @@ from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.vectors import dot
 from eomgen.model import Coordinate, Description, Model, Prescribed
 from eomgen.program import Function, Program, Variable
+from eomgen.spec.units import si_unit
 
 LARGEST_UNROLLED = 12  # equations; above, L D L' runs in a loop
 
@@ -196,16 +197,16 @@ def program(m: Machine) -> Program:
 
 
 def _variable(name: str, description: Description, value: sp.Expr | None = None) -> Variable:
-    return Variable(name, si_unit(description.dimension), description.about, value)
+    return Variable(name, _unit(description), description.about, value)
 
 
-def si_unit(dimension: Dimension | None) -> str:
-    """SI base units, empty where the spec states none or where it is a plain number."""
-    return "" if dimension is None or dimension == NONE else str(dimension)
-
-
-def _rate_dimension(description: Description) -> Dimension | None:
-    return None if description.dimension is None else description.dimension / TIME
+def _unit(description: Description, per: Dimension = NONE) -> str:
+    """The SI unit per time where asked; an angle keeps its name; empty where none is stated."""
+    if description.dimension is None:
+        return ""
+    if description.dimension == NONE and description.unit:
+        return "rad" if per == NONE else f"rad/{si_unit(per)}"
+    return si_unit(description.dimension / per)
 
 
 def _moving(model: Model, moving: Coordinate | Prescribed) -> Variable:
@@ -219,7 +220,7 @@ def _speeds(model: Model) -> tuple[Variable, ...]:
     return tuple(
         Variable(
             c.rate.name,
-            si_unit(_rate_dimension(c.description)),
+            _unit(c.description, TIME),
             f"rate of {c.name}",
             model.initial.get(c.rate.name),
         )

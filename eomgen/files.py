@@ -23,13 +23,13 @@ def read(path: str) -> bytes:
         UsageError: the file cannot be read.
     """
     try:
-        stream = sys.stdin.buffer if path == STANDARD else Path(path).open("rb")
-        with stream:
+        if path == STANDARD:
+            return sys.stdin.buffer.read(LARGEST)
+        with Path(path).open("rb") as stream:
             return stream.read(LARGEST)
     except OSError as error:
-        raise UsageError(
-            f"{path}: {error.strerror}; give a file, or - for standard input"
-        ) from error
+        remedy = "give a file, or - for standard input"
+        raise UsageError(f"{path}: {error.strerror}; {remedy}") from error
 
 
 def shown(path: str) -> str:

@@ -12,12 +12,10 @@ linearly independent (Fourier), hence two equal polynomials have the same terms.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
-
-import sympy as sp
 
 Monomial = tuple[tuple[int, int], ...]  # (atom, exponent), atoms ascending
 Wave = tuple[tuple[int, "int | Fraction"], ...]  # (angle, factor), angles ascending
@@ -325,6 +323,14 @@ def cleared(form: Form, atom: int) -> Form:
     return total(ring, (Form(ring, terms) * value**e for e, terms in groups.items()))
 
 
-def map_terms(form: Form, function: Callable[[Key, Number], Form]) -> Form:
-    """The sum of function(key, coefficient) over the terms."""
-    return total(form.ring, (function(k, c) for k, c in form.terms.items()))
+def linear_parts(form: Form, atoms: Iterable[int]) -> tuple[dict[int, Form], Form]:
+    """(coefficient of each atom, rest) of a form that is linear in the atoms."""
+    parts: dict[int, Terms] = {atom: {} for atom in atoms}
+    rest: Terms = {}
+    for (monomial, wave, sine), c in form.terms.items():
+        atom = next((a for a, _ in monomial if a in parts), None)
+        if atom is None:
+            rest[monomial, wave, sine] = c
+        else:
+            parts[atom][tuple(p for p in monomial if p[0] != atom), wave, sine] = c
+    return {a: Form(form.ring, terms) for a, terms in parts.items()}, Form(form.ring, rest)

@@ -26,7 +26,6 @@ from eomgen.mechanics.equations import (
     virtual_name,
 )
 from eomgen.mechanics.kinematics import Flow, Kinematics
-from eomgen.mechanics.vectors import dot
 from eomgen.model import TIME, Coordinate, Model
 
 
@@ -164,17 +163,18 @@ def _equation(lagrangian: Lagrangian, coordinate: Coordinate, row: LagrangeRow) 
 
 
 def matrix_form(kinematics: Kinematics[Form], equations: tuple[Equation, ...]) -> Equations[Form]:
-    """M, h and Q read off the equations: M is the derivative of the inertia terms by u'."""
-    model, algebra = kinematics.model, kinematics.algebra
+    """M, h and Q read off the equations, whose inertia terms are linear in u'."""
+    model, ring = kinematics.model, kinematics.algebra.number(0).ring
     unknown = [s.rate for s in model.speeds] or [c.acceleration for c in model.coordinates]
-    one = algebra.number(1)
-    matrix = tuple(
-        tuple(algebra.along(e.inertia, {symbol: one}) for symbol in unknown) for e in equations
+    atoms = [ring.atom(symbol) for symbol in unknown]
+    parts = [normal.linear_parts(e.inertia, atoms) for e in equations]
+    return Equations(
+        mass_matrix=tuple(tuple(row[a] for a in atoms) for row, _ in parts),
+        bias=tuple(rest for _, rest in parts),
+        generalized_forces=tuple(
+            e.applied - e.damping - e.elastic - e.gravity - e.other for e in equations
+        ),
     )
-    accelerated = [dot(row, [algebra.of(symbol) for symbol in unknown]) for row in matrix]
-    bias = tuple(e.inertia - a for e, a in zip(equations, accelerated, strict=True))
-    forces = tuple(e.applied - e.damping - e.elastic - e.gravity - e.other for e in equations)
-    return Equations(matrix, bias, forces)
 
 
 def _places(kinematics: Kinematics[Form]) -> tuple[Place, ...]:

@@ -1,5 +1,6 @@
 """Templates: where ours are, how a user's folder overrides them, whose mistake an error is."""
 
+import re
 import textwrap
 import traceback
 from pathlib import Path
@@ -51,16 +52,14 @@ def one_line(text: str) -> str:
 
 def c_comment(text: str) -> str:
     """`text` for the inside of a C comment: it can neither end it nor start another."""
-    safe = one_line(text)
-    for pair in ("*/", "/*", "??"):
-        safe = safe.replace(pair, f"{pair[0]} {pair[1]}")
-    return safe
+    return re.sub(r"\*(?=/)|/(?=\*)|\?(?=\?)", r"\g<0> ", one_line(text))
 
 
 def c_string(text: str) -> str:
     """`text` as a C string literal."""
-    safe = one_line(text).replace("\\", "\\\\").replace('"', '\\"').replace("??", '?""?')
-    return f'"{safe}"'
+    safe = one_line(text).replace("\\", "\\\\").replace('"', '\\"')
+    without_trigraphs = re.sub(r"\?(?=\?)", '?""', safe)
+    return f'"{without_trigraphs}"'
 
 
 def python_string(text: str) -> str:

@@ -77,7 +77,11 @@ def _product(shown: Product) -> str:
         return above
     below = " ".join(_factor(d) for d in shown.divisors)
     single = len(shown.divisors) == 1 and " " not in below
-    return f"{above}/{below}" if single or below.startswith("(") and len(shown.divisors) == 1 else f"{above}/({below})"
+    return (
+        f"{above}/{below}"
+        if single or below.startswith("(") and len(shown.divisors) == 1
+        else f"{above}/({below})"
+    )
 
 
 def _factor(shown: Tree) -> str:

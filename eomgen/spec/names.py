@@ -10,6 +10,7 @@ from eomgen.spec.language import LANGUAGE
 from eomgen.spec.ledger import Ledger, Mistake, shown
 from eomgen.spec.reader import Mapping, Node, Scalar
 from eomgen.spec.scope import PRIMES, Known
+from eomgen.spec.structure import is_misspelt
 
 MOST_CHARACTERS = 60
 KINDS = {  # key of the file -> kind of name, number of derivatives it has
@@ -41,10 +42,11 @@ def declare(root: Mapping, ledger: Ledger) -> dict[str, Known]:
 
 def are_complete(root: Mapping) -> bool:
     """Whether every name that the author meant could be declared."""
-    known = all(entry.key.text in LANGUAGE.keys for entry in root.entries)
+    if any(is_misspelt(section, root, LANGUAGE.keys) for section in KINDS):
+        return False
     tables = [root.get(section) for section in KINDS]
     shaped = all(table is None or isinstance(table, Mapping) for table in tables)
-    return known and shaped and root.get("coordinates") is not None
+    return shaped and root.get("coordinates") is not None
 
 
 def check(key: Scalar, names: dict[str, Known]) -> Scalar:

@@ -124,9 +124,13 @@ def _note_missing(
 
 def is_missing(name: str, node: Mapping, keys: Map[str, Key]) -> bool:
     """Whether a key is not there, not even misspelt."""
-    given = {entry.key.text for entry in node.entries}
-    astray = [word[:60] for word in given if word not in keys]
-    return name not in given and not get_close_matches(name, astray, 1, 0.6)
+    return node.get(name) is None and not is_misspelt(name, node, keys)
+
+
+def is_misspelt(name: str, node: Mapping, keys: Map[str, Key]) -> bool:
+    """Whether a key is not there but an unknown one looks like it."""
+    astray = [e.key.text[:60] for e in node.entries if e.key.text not in keys]
+    return node.get(name) is None and bool(get_close_matches(name, astray, 1, 0.6))
 
 
 def _refused_for_now(entry: Entry, ledger: Ledger, path: tuple[str, ...]) -> bool:

@@ -1,0 +1,83 @@
+"""Code flows one way: each room imports only from the rooms listed for it."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1] / "eomgen"
+
+RECORDS = {"errors", "dimension", "model", "program", "__init__"}
+ALLOWED: dict[str, set[str]] = {
+    "__init__": set(),
+    "errors": set(),
+    "dimension": set(),
+    "model": {"dimension"},
+    "program": set(),
+    "spec": {"errors", "dimension", "model"},
+    "algebra": {"errors", "program", "model"},
+    "mechanics": RECORDS | {"algebra"},
+    "interpreter": RECORDS | {"algebra"},
+    "compile": RECORDS | {"algebra", "mechanics", "spec"},
+    "checks": RECORDS | {"algebra", "mechanics", "compile"},
+    "study": RECORDS | {"spec", "mechanics", "compile", "checks"},
+    "render": RECORDS | {"algebra", "mechanics"},
+    "numerics": RECORDS | {"render", "interpreter"},
+    "states": RECORDS | {"mechanics"},
+    "evaluate": RECORDS
+    | {"mechanics", "compile", "interpreter", "render", "numerics", "states"},
+    "files": {"errors"},
+    "shelf": {"errors", "files", "render", "spec"},
+    "outputs": RECORDS | {"study", "render", "checks"},
+    "cli": {"errors", "files", "outputs", "study", "states", "evaluate", "shelf", "spec"},
+}
+
+
+def room(path: Path) -> str:
+    """The top-level module or package that a file belongs to."""
+    first = path.relative_to(ROOT).parts[0]
+    return first.removesuffix(".py")
+
+
+def imported_rooms(path: Path) -> set[str]:
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "eomgen":
+            parts = node.module.split(".")
+            found |= {parts[1]} if len(parts) > 1 else {alias.name for alias in node.names}
+        elif isinstance(node, ast.Import):
+            found |= {
+                (alias.name.split(".") + ["__init__"])[1]
+                for alias in node.names
+                if alias.name.split(".")[0] == "eomgen"
+            }
+    return {"__init__" if name == "__version__" else name for name in found}
+
+
+FILES = sorted(ROOT.rglob("*.py"))
+
+
+def test_every_room_is_in_the_table() -> None:
+    assert {room(f) for f in FILES} <= ALLOWED.keys()
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_imports_flow_one_way(path: Path) -> None:
+    own = room(path)
+    back = imported_rooms(path) - ALLOWED[own] - {own}
+    assert not back, f"{path.name} imports from {sorted(back)}, which stand to the right of {own}"
+
+
+def test_no_circle_of_rooms() -> None:
+    """The table itself is an order: repeatedly take away what imports nothing that is left."""
+    left = {name: {n for n in wanted if n != name} for name, wanted in ALLOWED.items()}
+    while left:
+        free = [name for name, wanted in left.items() if not wanted & left.keys()]
+        assert free, f"these rooms import each other: {sorted(left)}"
+        for name in free:
+            del left[name]
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_files_stay_small(path: Path) -> None:
+    assert len(path.read_text(encoding="utf-8").splitlines()) <= 400

@@ -1,0 +1,16 @@
+"""Optional programs on the path: a test that needs one says so, and CI forbids to skip it."""
+
+import os
+import shutil
+
+import pytest
+
+STRICT = "EOMGEN_NO_SKIP"  # set: a tool that is missing is a failure
+
+
+def tool(name):
+    """The path of a program; without it the test is skipped, or fails where `STRICT` is set."""
+    found = shutil.which(name)
+    if not found:
+        (pytest.fail if os.environ.get(STRICT) else pytest.skip)(f"{name} is not installed")
+    return found
