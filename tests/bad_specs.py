@@ -103,7 +103,7 @@ BAD = (
     Bad("body without place", changed(", at: P", ""), "10:3 E112"),
     Bad("body without mass", changed("mass: m, ", ""), "10:8 E110"),
     Bad("body placed twice", changed("at: P", "at: P, rod: [P, P]"), "10:3 E112"),
-    Bad("empty formula", changed("at: P", "at: "), "10:22 E109"),
+    Bad("empty formula", changed("at: P", "at: "), "10:18 E109"),
     Bad("positive maybe", changed("m: 2 kg", "m: {value: 2 kg, positive: yes}"), "5:41 E111"),
     Bad("dof in words", extended("expect: {dof: one}"), "11:15 E111"),
     Bad("range of one", extended("range: {phi: [1]}"), "11:14 E109"),

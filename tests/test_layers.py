@@ -24,8 +24,7 @@ ALLOWED: dict[str, set[str]] = {
     "render": RECORDS | {"algebra", "mechanics"},
     "numerics": RECORDS | {"render", "interpreter"},
     "states": RECORDS | {"mechanics"},
-    "evaluate": RECORDS
-    | {"mechanics", "compile", "interpreter", "render", "numerics", "states"},
+    "evaluate": RECORDS | {"mechanics", "compile", "interpreter", "render", "numerics", "states"},
     "files": {"errors"},
     "shelf": {"errors", "files", "render", "spec"},
     "outputs": RECORDS | {"study", "render", "checks"},

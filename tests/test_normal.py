@@ -12,9 +12,9 @@ from eomgen.algebra.closed import ClosedForm, to_sympy
 from eomgen.algebra.normal import ONE, inverse, is_zero, linear_parts, number
 
 x, y, z, t = sp.symbols("x y z t", real=True)
-l, m = sp.symbols("l m", positive=True)
+a, m = sp.symbols("a m", positive=True)
 
-leaves = st.sampled_from([x, y, z, l, m, sp.Integer(2), sp.Rational(-3, 5), sp.sin(x), sp.cos(y)])
+leaves = st.sampled_from([x, y, z, a, m, sp.Integer(2), sp.Rational(-3, 5), sp.sin(x), sp.cos(y)])
 
 
 def _grow(inner: st.SearchStrategy[sp.Expr]) -> st.SearchStrategy[sp.Expr]:
@@ -34,13 +34,13 @@ expressions = st.recursive(leaves, _grow, max_leaves=6)
 
 def values(seed: int) -> dict[sp.Symbol, sp.Float]:
     chance = random.Random(seed)
-    return {s: sp.Float(chance.uniform(0.3, 1.2), 40) for s in (x, y, z, l, m, t)}
+    return {s: sp.Float(chance.uniform(0.3, 1.2), 40) for s in (x, y, z, a, m, t)}
 
 
 def close(left: sp.Expr, right: sp.Expr, seed: int = 1) -> bool:
     at = values(seed)
-    a, b = (sp.N(e.xreplace(at), 30) for e in (left, right))
-    return abs(a - b) <= sp.Float("1e-20") * (1 + abs(a))
+    one, other = (sp.N(e.xreplace(at), 30) for e in (left, right))
+    return abs(one - other) <= sp.Float("1e-20") * (1 + abs(one))
 
 
 @given(expressions, st.integers(0, 9))
@@ -51,10 +51,10 @@ def test_value_is_that_of_sympy(expression: sp.Expr, seed: int) -> None:
 
 @given(expressions, expressions)
 @settings(max_examples=100, deadline=None, derandomize=True)
-def test_equal_polynomials_have_the_same_terms(a: sp.Expr, b: sp.Expr) -> None:
+def test_equal_polynomials_have_the_same_terms(p: sp.Expr, q: sp.Expr) -> None:
     algebra = ClosedForm()
-    left = (algebra.of(a) + algebra.of(b)) ** 2
-    right = algebra.of(sp.expand(a**2)) + 2 * algebra.of(a) * algebra.of(b) + algebra.of(b**2)
+    left = (algebra.of(p) + algebra.of(q)) ** 2
+    right = algebra.of(sp.expand(p**2)) + 2 * algebra.of(p) * algebra.of(q) + algebra.of(q**2)
     assert left == right
 
 
@@ -71,9 +71,9 @@ FUNCTIONS = [
     sp.tan(x), sp.asin(x / 3), sp.acos(y / 3), sp.atan(x * y), sp.atan2(x, y), sp.sinh(x),
     sp.cosh(y), sp.tanh(x * y), sp.exp(x * y), sp.log(x + 1), sp.sqrt(x**2 + y), sp.Abs(x - y),
     sp.sign(x - y) * x, sp.Min(x, y), sp.Max(x, y, z), x ** sp.Rational(1, 3), x**y, 1 / (x + y),
-    sp.sqrt(x + y) ** 3, sp.Abs(x - y) ** 3, sp.cosh(x) ** 3, sp.sin(l * sp.cos(x)), sp.E * x,
+    sp.sqrt(x + y) ** 3, sp.Abs(x - y) ** 3, sp.cosh(x) ** 3, sp.sin(a * sp.cos(x)), sp.E * x,
     sp.sqrt(8) * x, sp.sin(x + sp.pi / 2), sp.cos(3 * sp.pi / 2 - x), sp.sin(x + sp.pi / 4),
-    sp.sin(x / 2) ** 2, sp.sqrt(l**2 * m * (x**2 + 1)), sp.sqrt(l**2 / m**2),
+    sp.sin(x / 2) ** 2, sp.sqrt(a**2 * m * (x**2 + 1)), sp.sqrt(a**2 / m**2),
 ]  # fmt: skip
 
 
@@ -98,9 +98,9 @@ ZEROS = [
     sp.tan(x) * sp.cos(x) - sp.sin(x),
     1 / (x + y) + 1 / (x - y) - 2 * x / (x**2 - y**2),
     x / sp.sqrt(x**2 + y**2) - x * sp.sqrt(x**2 + y**2) / (x**2 + y**2),
-    sp.sqrt(l**2) - l,
+    sp.sqrt(a**2) - a,
     sp.cosh(x) ** 2 - sp.sinh(x) ** 2 - 1,
-    sp.sin(l * sp.cos(x)) ** 2 + sp.cos(l * sp.cos(x)) ** 2 - 1,
+    sp.sin(a * sp.cos(x)) ** 2 + sp.cos(a * sp.cos(x)) ** 2 - 1,
     sp.sin(x + 7 * sp.pi) + sp.sin(x),
     (sp.sin(x) ** 2 + x * sp.sin(x)) / sp.sin(x) - sp.sin(x) - x,
 ]
@@ -128,7 +128,7 @@ def test_root_of_an_unknown_sign_is_not_taken() -> None:
 
 def test_linear_parts_add_up() -> None:
     algebra = ClosedForm()
-    form = algebra.of(3 * x * sp.sin(z) + y * l - 4 * m)
+    form = algebra.of(3 * x * sp.sin(z) + y * a - 4 * m)
     atoms = [algebra.ring.atom(s) for s in (x, y)]
     parts, rest = linear_parts(form, atoms)
     again = parts[atoms[0]] * algebra.of(x) + parts[atoms[1]] * algebra.of(y) + rest

@@ -15,6 +15,14 @@ def source(text):
     return Scalar(text, 1, 1)
 
 
+def outcome(function, argument):
+    """The result and None, or None and the mistake."""
+    try:
+        return function(argument), None
+    except Mistake as mistake:
+        return None, mistake
+
+
 @pytest.mark.parametrize(
     ("text", "value", "dimension"),
     [
@@ -57,9 +65,7 @@ def test_quantity_is_exact(text, value, dimension):
     assert (found.value, found.dimension) == (value, dimension)
 
 
-@pytest.mark.parametrize(
-    "text", ["x", "2*x", "2 + 3", "m*R^2/4", "pi/2", "", "[1, 2]", "-x", "1e5.2"]
-)
+@pytest.mark.parametrize("text", ["x", "2*x", "2 + 3", "m*R^2/4", "pi/2", "", "[1, 2]", "-x"])
 def test_formulas_are_no_quantities(text):
     assert quantity(source(text)) is None
 
@@ -74,7 +80,7 @@ def test_formulas_are_no_quantities(text):
         ("2 m^2.5", 6, "E402"),
         ("2 (m", 1, None),
         ("2 m)", 4, "E402"),
-        ("2 J/kg K", 7, "E402"),
+        ("2 J/kg K", 8, "E402"),
         ("2 degC", 3, "E402"),
         ("2 m**9**9**9", 7, "E402"),
         ("2 m " + "m" * 90, 2, "E402"),
@@ -94,11 +100,9 @@ def test_wrong_unit_is_refused_at_its_column(text, column, code):
 @given(st.text(alphabet="kgmsNrad/*^()12- %", max_size=30))
 @settings(max_examples=500, deadline=None)
 def test_nothing_but_a_mistake_comes_out(text):
-    try:
-        found = quantity(source("2 " + text))
-    except Mistake as mistake:
+    found, mistake = outcome(quantity, source("2 " + text))
+    if mistake is not None:
         assert 1 <= mistake.spot.column <= len(text) + 3
-        return
     assert found is None or found.value.is_finite
 
 

@@ -5,7 +5,7 @@ import shutil
 
 import pytest
 
-STRICT = "EOMGEN_NO_SKIP"  # set: a tool that is missing is a failure
+STRICT = "EOMGEN_REQUIRE_TOOLS"  # set: a tool that is missing is a failure
 
 
 def tool(name):

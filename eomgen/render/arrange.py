@@ -13,15 +13,23 @@ from eomgen.model import Model
 from eomgen.render import arrange_order, tree
 from eomgen.render.arrange_order import Kind, Order
 from eomgen.render.arrange_pieces import Piece, shown, summed
-from eomgen.render.arrange_powers import by_power
-from eomgen.render.arrange_sums import Strategy, by_content, by_parameter, collected, shortest
+from eomgen.render.arrange_powers import by_power, by_whole_power
+from eomgen.render.arrange_sums import (
+    Strategy,
+    by_content,
+    by_parameter,
+    by_weight,
+    collected,
+    shortest,
+)
 from eomgen.render.arrange_terms import Factors, Term, flat
 from eomgen.render.tree import Symbol, Tree
 
 INERTIA: tuple[Strategy, ...] = (collected,)
 LOADS: tuple[Strategy, ...] = (collected, by_power, by_parameter)
-KINETIC: tuple[Strategy, ...] = (collected, by_power, by_content)
-POTENTIAL: tuple[Strategy, ...] = (collected, by_power, by_content, by_parameter)
+KINETIC: tuple[Strategy, ...] = (collected, by_whole_power, by_content)
+POTENTIAL: tuple[Strategy, ...] = (collected, by_power, by_weight, by_parameter)
+DISSIPATION: tuple[Strategy, ...] = (collected, by_power)
 
 
 @dataclass
@@ -53,14 +61,24 @@ def degree(factors: Factors, term: Term) -> int:
     return sum(e for f, e in term.motion if factors.kind(f) is Kind.RATE)
 
 
-def energy(arranger: Arranger, form: Form) -> Tree:
-    """An energy or a dissipation function: 1/2 k (s - l_0)^2, 1/2 m (R'^2 + R^2 theta'^2)."""
+def _shortest(arranger: Arranger, form: Form, strategies: tuple[Strategy, ...]) -> Tree:
     factors = arranger.factors(form.ring)
-    terms = flat(factors, form)
-    moving = [t for t in terms if degree(factors, t)]
-    resting = [t for t in terms if not degree(factors, t)]
-    pieces = shortest(factors, moving, KINETIC) + shortest(factors, resting, POTENTIAL)
-    return summed(factors, pieces)
+    return summed(factors, shortest(factors, flat(factors, form), strategies))
+
+
+def kinetic(arranger: Arranger, form: Form) -> Tree:
+    """1/2 (m_A + m_B) s'^2 + ..., 1/2 m (R'^2 + R^2 theta'^2): squares first, then products."""
+    return _shortest(arranger, form, KINETIC)
+
+
+def potential(arranger: Arranger, form: Form) -> Tree:
+    """1/2 k (s - l_0)^2 - m g l cos phi."""
+    return _shortest(arranger, form, POTENTIAL)
+
+
+def dissipation(arranger: Arranger, form: Form) -> Tree:
+    """1/2 c (x_1' - x_2')^2."""
+    return _shortest(arranger, form, DISSIPATION)
 
 
 def motion(arranger: Arranger, form: Form, own: str | None = None) -> Tree:
@@ -92,12 +110,10 @@ def sections(
 
 
 def loads(arranger: Arranger, form: Form) -> Tree:
-    """A generalized force: inputs first, F - c (x1' - x2') - k (s - l_0)."""
-    factors = arranger.factors(form.ring)
-    return summed(factors, shortest(factors, flat(factors, form), LOADS))
+    """A generalized force: inputs first, F - c (x_1' - x_2') - k (s - l_0)."""
+    return _shortest(arranger, form, LOADS)
 
 
 def work(arranger: Arranger, form: Form) -> Tree:
     """Virtual work: one bracket for each virtual displacement, as declared."""
-    factors = arranger.factors(form.ring)
-    return summed(factors, collected(factors, flat(factors, form)))
+    return _shortest(arranger, form, INERTIA)

@@ -21,7 +21,8 @@ HALF = Fraction(1, 2)
 class Piece:
     """One term of a sum with what was collected in it.
 
-    coefficient: sums of parameters, printed first; inner: sums of what moves, before the rates.
+    coefficient: sums of parameters, printed first; inner: sums that multiply rates, before them;
+    last: other sums of what moves, before functions only.
     """
 
     number: Fraction
@@ -29,6 +30,7 @@ class Piece:
     motion: Powers
     coefficient: tuple[Tree, ...] = ()
     inner: tuple[Tree, ...] = ()
+    last: tuple[Tree, ...] = ()
     rank: tuple[object, ...] = ()
 
 
@@ -47,14 +49,12 @@ def shown(factors: Factors, piece: Piece) -> Tree:
     above, below = _sides(piece.parameters)
     moving, divisors = _sides(_with_tangents(factors, piece.motion))
     early = tuple(p for p in moving if factors.kind(p[0]) < Kind.ACCELERATION)
-    late = tuple(p for p in moving if factors.kind(p[0]) >= Kind.ACCELERATION)
+    rates = tuple(p for p in moving if factors.kind(p[0]) in (Kind.ACCELERATION, Kind.RATE))
+    late = tuple(p for p in moving if factors.kind(p[0]) > Kind.RATE)
+    symbols = factors.tree(early) + piece.inner + factors.tree(rates)
     return tree.product(
         piece.number,
-        piece.coefficient
-        + factors.tree(above)
-        + factors.tree(early)
-        + piece.inner
-        + factors.tree(late),
+        piece.coefficient + factors.tree(above) + symbols + piece.last + factors.tree(late),
         factors.tree(below) + factors.tree(divisors),
     )
 
@@ -102,18 +102,26 @@ def rank(factors: Factors, term: Term) -> tuple[object, ...]:
         -degree,
         len(rates),
         rates,
-        _standing(by_kind),
+        standing(factors, term.motion),
         ranks,
         [(factors.ranks[f], -e) for f, e in term.parameters],
     )
 
 
-def _standing(by_kind: Iterable[Kind]) -> int:
-    """0 with a symbol, 1 for a constant, 2 for functions alone."""
-    kinds = set(by_kind) - {Kind.ACCELERATION, Kind.RATE, Kind.VIRTUAL, Kind.INPUT}
-    if not kinds:
-        return 1
-    return 2 if kinds == {Kind.FUNCTION} else 0
+def standing(factors: Factors, motion: Powers) -> int:
+    """0 with a symbol or a length, 1 for a constant, 2 for sines, cosines and quotients alone."""
+    held = [(f, e) for f, e in motion if factors.kind(f) in (Kind.COORDINATE, Kind.FUNCTION)]
+    solid = [f for f, e in held if e > 0 and f not in factors.waves]
+    return 0 if solid else (2 if held else 1)
+
+
+def oriented(factors: Factors, pieces: Sequence[Piece]) -> tuple[int, list[Piece]]:
+    """(sign, pieces * sign): -k (s - l_0), not k (l_0 - s), yet c (x_2' - x_1')."""
+    foremost = min(standing(factors, p.motion) for p in pieces)
+    leading = [p.number < 0 for p in pieces if standing(factors, p.motion) == foremost]
+    if 2 * sum(leading) > len(leading):
+        return -1, [negated(p) for p in pieces]
+    return 1, list(pieces)
 
 
 def content(numbers: Iterable[Fraction], moving: bool = False) -> Fraction:

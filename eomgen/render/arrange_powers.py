@@ -28,6 +28,13 @@ def by_power(factors: Factors, terms: Sequence[Term]) -> list[Piece]:
     return pieces + collected(factors, left) if pieces else []
 
 
+def by_whole_power(factors: Factors, terms: Sequence[Term]) -> list[Piece]:
+    """As `by_power`, unless products of two rates are left: those show the mass matrix."""
+    pieces = by_power(factors, terms)
+    crossing = [p for p in pieces if sum(factors.kind(f) is Kind.RATE for f, _ in p.motion) > 1]
+    return pieces if not crossing else []
+
+
 def _groups(factors: Factors, terms: Sequence[Term]) -> list[list[Term]]:
     """Terms that share a parameter, as declared; at last all of them."""
     groups: dict[int, list[Term]] = {}
@@ -57,7 +64,7 @@ def _as_power(factors: Factors, terms: list[Term]) -> Piece | None:
         number,
         factors.sort(parameters.items()),
         factors.sort(motion.items()),
-        inner=(tree.Power(base, exponent),),
+        last=(tree.Power(base, exponent),),
         rank=min(rank(factors, t) for t in terms),
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
+from dataclasses import replace
 from typing import TypeVar
 
 from eomgen.render import tree
@@ -11,8 +12,8 @@ from eomgen.render.arrange_pieces import (
     Piece,
     common,
     content,
-    negated,
     of_term,
+    oriented,
     rank,
     shown,
     summed,
@@ -69,7 +70,8 @@ def _one_lead(factors: Factors, terms: list[Term]) -> list[Piece]:
     lead = _lead(factors, terms[0])
     if len(pieces) < 2 or not lead or len(terms) > WIDEST:
         return pieces
-    return [bracket(factors, terms, collected)]
+    found = bracket(factors, terms, collected)
+    return [replace(found, inner=found.last, last=())]
 
 
 def bracket(factors: Factors, terms: Sequence[Term], inside: Strategy) -> Piece:
@@ -84,22 +86,14 @@ def bracket(factors: Factors, terms: Sequence[Term], inside: Strategy) -> Piece:
     number = content([t.number for t in rest], moving=True)
     rest = [t._replace(number=t.number / number) for t in rest]
     pieces = inside(factors, rest)
-    if _leads_negative(factors, pieces):
-        number, pieces = -number, [negated(p) for p in pieces]
+    sign, pieces = oriented(factors, pieces)
     return Piece(
-        number,
+        sign * number,
         factors.sort(parameters.items()),
         factors.sort(motion.items()),
-        inner=(summed(factors, pieces),),
+        last=(summed(factors, pieces),),
         rank=min(rank(factors, t) for t in terms),
     )
-
-
-def _leads_negative(factors: Factors, pieces: Sequence[Piece]) -> bool:
-    """-k (s - l_0), not k (l_0 - s): whether all terms with a symbol that moves are negative."""
-    kinds = [{factors.kind(f) for f, _ in p.motion} - {Kind.FUNCTION} for p in pieces]
-    moving = [p for p, kind in zip(pieces, kinds, strict=True) if kind] or pieces
-    return all(p.number < 0 for p in moving)
 
 
 def _one_motion(factors: Factors, terms: list[Term]) -> list[Piece]:
@@ -111,12 +105,10 @@ def _one_motion(factors: Factors, terms: list[Term]) -> list[Piece]:
         return _by_cofactor(factors, terms)
     number = content([t.number for t in terms])
     rest = [Term(t.number / number, without(factors, t.parameters, shared), ()) for t in terms]
-    pieces = _by_cofactor(factors, rest)
-    if all(p.number < 0 for p in pieces):
-        number, pieces = -number, [negated(p) for p in pieces]
+    sign, pieces = oriented(factors, _by_cofactor(factors, rest))
     return [
         Piece(
-            number,
+            sign * number,
             factors.sort(shared.items()),
             terms[0].motion,
             coefficient=(summed(factors, pieces),),
@@ -150,7 +142,7 @@ def _cofactors(powers: Powers) -> list[Powers]:
 
 def _coefficient(piece: Piece) -> Hashable:
     """Pieces with an equal key may share their coefficient."""
-    return (piece.parameters, piece.coefficient) if not piece.inner else id(piece)
+    return (piece.parameters, piece.coefficient) if not piece.inner + piece.last else id(piece)
 
 
 def _shared(factors: Factors, pieces: list[Piece]) -> list[Piece]:
@@ -166,16 +158,15 @@ def _shared(factors: Factors, pieces: list[Piece]) -> list[Piece]:
         of_term(factors, Term(p.number / number, (), without(factors, p.motion, motion)))
         for p in pieces
     ]
-    if all(p.number < 0 for p in rest):
-        number, rest = -number, [negated(p) for p in rest]
+    sign, rest = oriented(factors, rest)
     return [
         Piece(
-            number,
+            sign * number,
             first.parameters,
             factors.sort(motion.items()),
             first.coefficient,
-            (summed(factors, rest),),
-            min(p.rank for p in pieces),
+            last=(summed(factors, rest),),
+            rank=min(p.rank for p in pieces),
         )
     ]
 
@@ -207,6 +198,11 @@ def _has_bare(factors: Factors, terms: list[Term]) -> bool:
 
 def by_content(factors: Factors, terms: Sequence[Term]) -> list[Piece]:
     """All terms in one bracket if they share a parameter, else nothing."""
-    if not common([t.parameters for t in terms]):
-        return []
-    return [bracket(factors, terms, collected)]
+    shared = common([t.parameters for t in terms])
+    return [bracket(factors, terms, collected)] if shared else []
+
+
+def by_weight(factors: Factors, terms: Sequence[Term]) -> list[Piece]:
+    """-m g (l_1 cos q_1 + l_2 cos q_2), but g alone is not taken out of a potential."""
+    shared = common([t.parameters for t in terms])
+    return [bracket(factors, terms, collected)] if len(shared) > 1 else []

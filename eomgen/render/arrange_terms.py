@@ -44,6 +44,7 @@ class Factors:
     monomials: dict[Monomial, tuple[Powers, Powers, dict[Ripple, int]]] = field(
         default_factory=dict
     )
+    waves: set[int] = field(default_factory=set)  # sines and cosines
     squares: dict[int, Form] = field(default_factory=dict)  # factor that is a root -> its square
 
     def add(self, key: Hashable, rank: Rank, tree: Tree) -> int:
@@ -80,8 +81,15 @@ class Factors:
         ) if known is None else known
 
     def tree(self, powers: Powers) -> tuple[Tree, ...]:
-        """Powers with positive exponents, as displayed."""
-        return tuple(power(self.trees[f], e) for f, e in powers)
+        """Powers with positive exponents, as displayed; an even power of a root is none."""
+        return tuple(self._power(f, e) for f, e in powers)
+
+    def _power(self, factor: int, exponent: int) -> Tree:
+        shown = self.trees[factor]
+        if factor in self.squares and exponent % 2 == 0:
+            assert isinstance(shown, Function)
+            return power(shown.arguments[0], exponent // 2)
+        return power(shown, exponent)
 
 
 def flat(factors: Factors, form: Form) -> list[Term]:
@@ -205,6 +213,7 @@ def wave_factor(factors: Factors, ripple: Ripple) -> int:
     tree = Function("sin" if sine else "cos", (factors.argument(factors, argument),))
     factors.flipped[ripple] = sine and sign < 0
     factor = factors.add(ripple, _function_rank(ranks, tie), tree)
+    factors.waves.add(factor)
     if sine:
         factors.ripples[factor] = ripple
     return factor

@@ -49,14 +49,14 @@ def _index(text: str) -> str:
 
 def _word(word: str) -> str:
     """A single letter, a Greek letter, or an upright word."""
-    word = "".join(_latin(c) for c in word)
+    word = "".join(latin_letters(c) for c in word)
     if word in GREEK:
         return rf"\{word}"
     word = LIKE_LATIN.get(word, word)
     return word if len(word) == 1 else rf"\mathrm{{{word}}}"
 
 
-def _latin(character: str) -> str:
+def latin_letters(character: str) -> str:
     """A Greek character by its name, other letters without their accents."""
     name = unicodedata.name(character, "")
     found = re.fullmatch(r"GREEK (SMALL|CAPITAL) LETTER (\w+)", name)

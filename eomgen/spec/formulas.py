@@ -1,5 +1,6 @@
 """Nodes of the file -> checked expressions: the one door through which formulas enter a model."""
 
+import re
 from dataclasses import replace
 
 import sympy as sp
@@ -7,11 +8,13 @@ import sympy as sp
 from eomgen.dimension import NONE
 from eomgen.model import Description
 from eomgen.spec import lower, units
-from eomgen.spec.formula import NAME, parse, parse_relation
+from eomgen.spec.formula import parse, parse_relation
 from eomgen.spec.ledger import Mistake
 from eomgen.spec.reader import Mapping, Node, Scalar, Sequence
 from eomgen.spec.scope import Known, Scene, Statement, Wanted
 from eomgen.spec.syntax import Quantity, Relation, Span, Tree, Vector, names
+
+UNIT_NAME = re.compile("[^0-9*/^() ]+")
 
 
 def tree_of(node: Node, scene: Scene) -> Tree:
@@ -29,8 +32,8 @@ def _lone_quantity(node: Scalar, scene: Scene) -> Quantity | None:
     match = units.QUANTITY.fullmatch(node.text)
     if match is None or match["unit"] is None:
         return None
-    words = NAME.findall(match["unit"])
-    if any(word not in units.UNITS or word in scene.names for word in words):
+    first = UNIT_NAME.match(match["unit"].strip())
+    if first is None or first.group() not in units.UNITS or first.group() in scene.names:
         return None
     found = units.quantity(node)
     if found is not None:

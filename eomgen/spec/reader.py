@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import yaml
 
-from eomgen.spec.ledger import Ledger, Mistake, shown
+from eomgen.spec.ledger import Ledger, Mistake, Spot, shown
 
 MOST_BYTES = 256 * 1024
 MOST_DEPTH = 40
@@ -212,8 +212,11 @@ class _Tree:
         if tag is not None:
             raise Mistake(spot, "E106", f"tag {shown(tag)}: a spec has no tags", "write plain text")
 
-    def scalar(self, event: yaml.ScalarEvent, spot: Point) -> Scalar:
+    def scalar(self, event: yaml.ScalarEvent, spot: Spot) -> Scalar:
         """The scalar, at the column of its first character."""
+        if not event.value and event.style in (None, "") and self.stack:
+            spot = self.stack[-1].key or self.stack[-1].spot  # a missing value stands nowhere
+            return Scalar("", spot.line, spot.column)
         line = self.ledger.lines[spot.line - 1] if spot.line <= len(self.ledger.lines) else ""
         plain = event.style in (None, "")
         start = spot.column - 1 if plain else spot.column

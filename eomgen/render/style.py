@@ -1,0 +1,28 @@
+"""How a page is spelled, in LaTeX or in plain text: the one thing in which the two differ."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from eomgen.render.tree import Tree
+
+Rows = Sequence[tuple[str, str]]  # (left side, right side) of equations below each other
+
+
+@dataclass(frozen=True)
+class Style:
+    """Spells trees, names, derivatives and displays; every function returns finished text."""
+
+    formula: Callable[[Tree], str]
+    symbol: Callable[[str], str]  # the name of a symbol: s, s', delta s
+    words: Callable[[str], str]  # a text of the user
+    unit: Callable[[str], str]
+    inline: Callable[[str], str]  # a formula inside of a sentence
+    index: Callable[[str, str], str]  # T, bob: T_bob
+    partial: Callable[[str, str], str]  # dL/ds
+    rate: Callable[[str], str]  # d/dt (...)
+    display: Callable[[Rows], str]  # equations below each other, long ones broken
+    matrix: Callable[[Sequence[Sequence[str]]], str]
+    remark: Callable[[str], str]  # words in place of a formula
+    bold: Callable[[str], str]  # a matrix's letter
