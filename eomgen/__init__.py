@@ -1,5 +1,3 @@
 """Equations of motion from one text file."""
 
-from importlib.metadata import version
-
-__version__ = version("eomgen")
+__version__ = "0.1.0"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from eomgen import files
+from eomgen import __version__, files
 from eomgen.errors import EomgenError, SpecError, UsageError
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ templates_option = click.option(
 
 
 @click.group(context_settings=SETTINGS, epilog=EXAMPLES)
-@click.version_option(package_name="eomgen", prog_name="eomgen")
+@click.version_option(__version__, prog_name="eomgen")
 def commands() -> None:
     """Equations of motion from one text file: lecture notes, C and Python, proven to agree."""
 

@@ -1,37 +1,49 @@
-"""Models of shipped specs and of spec texts, for tests."""
+"""The shipped specs and the extra scenes of the tests, each derived once for all tests."""
 
 from functools import cache
 from pathlib import Path
 
-from eomgen.model import Model
+from eomgen import compile
+from eomgen.checks import samples
+from eomgen.mechanics import lagrange
 from eomgen.spec import read
-from eomgen.study import Study, of_model
 
-SPECS = Path(__file__).parents[1] / "specs"
-NAMES = sorted(path.stem for path in SPECS.glob("*.yaml"))
+HERE = Path(__file__).parent
+SHIPPED = {p.stem: p for p in sorted((HERE.parent / "specs").glob("*.yaml"))}
+EXTRA = {p.stem: p for p in sorted((HERE / "fixtures").glob("*.yaml"))}
+FILES = SHIPPED | EXTRA
+
+
+def text_of(name):
+    return FILES[name].read_text(encoding="utf-8")
 
 
 @cache
-def model(name: str) -> Model:
-    path = SPECS / f"{name}.yaml"
-    return read(path.read_bytes(), path.name)
+def model_of(name):
+    return read(text_of(name), FILES[name].name)
 
 
 @cache
-def study(name: str) -> Study:
-    return of_model(model(name))
+def derivation_of(name):
+    return lagrange.derive(model_of(name))
 
 
-PENDULUM = """\
-eom: 1
-system: Pendulum
-space: plane
-gravity: [0, -g]
-parameters: {m: 2 kg, l: 0.5 m, g: 9.81 m/s^2, d: 0.1 N*m*s}
-coordinates: {phi: rad}
-inputs: {tau: N*m}
-bodies:
-  bob: {mass: m, at: "l*[sin(phi), -cos(phi)]", angle: phi}
-dampers: [{along: phi, damping: d}]
-moments: [{on: bob, moment: tau}]
-"""
+@cache
+def machine_of(name):
+    return compile.machine_of(model_of(name))
+
+
+@cache
+def program_of(name):
+    return compile.program(machine_of(name))
+
+
+@cache
+def samples_of(name):
+    return samples.draw(model_of(name), seed=7)
+
+
+def expecting(name, claims):
+    """The text of a spec whose claims are replaced by these lines."""
+    kept = text_of(name).partition("\nexpect:")[0]
+    return f"{kept}\nexpect:\n{claims}"

@@ -101,6 +101,7 @@ SINGULAR = {
     "zero mass": [2.0, 0.0, 0.8, 120.0, 9.81],
     "negative mass": [2.0, -1.0, 0.8, 120.0, 9.81],
     "negative sum": [-2.0, 0.5, 0.8, 120.0, 9.81],
+    "lost in rounding": [1e-15, 0.5, 0.8, 120.0, 9.81],
     "not a number": [2.0, 0.5, float("nan"), 120.0, 9.81],
 }
 

@@ -24,6 +24,17 @@ Number = int | Fraction
 Terms = dict[Key, Number]
 
 ONE: Key = ((), (), False)
+MOST_PRODUCTS = 400_000  # of terms, in one ring: some ten seconds
+
+
+class TooLarge(UsageError):
+    """The closed form has outgrown what a person could read and a machine should wait for."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            f"the closed form of this scene takes more than {MOST_PRODUCTS} products of terms; "
+            "use fewer coordinates, angles counted from fixed axes, or lower powers"
+        )
 
 
 def exact(value: Number) -> Number:
@@ -58,6 +69,7 @@ class Ring:
         default_factory=dict
     )
     squares: dict[int, Form] = field(default_factory=dict)  # kernels whose square is known
+    products: int = 0  # of terms, so far
 
     def atom(self, what: Atom) -> int:
         """The number of an atom, new or known."""
@@ -189,7 +201,11 @@ def total(ring: Ring, forms: Iterable[Form]) -> Form:
 
 def multiply(left: Form, right: Form) -> Form:
     """The product, reduced."""
-    ring, terms = left.ring, {}  # type: Ring, Terms
+    ring = left.ring
+    terms: Terms = {}
+    ring.products += len(left.terms) * len(right.terms)
+    if ring.products > MOST_PRODUCTS:
+        raise TooLarge
     for (m1, w1, s1), c1 in left.terms.items():
         for (m2, w2, s2), c2 in right.terms.items():
             monomial, c = ring.product(m1, m2), c1 * c2

@@ -11,7 +11,7 @@ import numpy as np
 from eomgen.algebra.arithmetic import evaluate, mpmath_arithmetic, over
 from eomgen.algebra.closed import ClosedForm, Evaluation
 from eomgen.algebra.graph import below
-from eomgen.algebra.normal import Form
+from eomgen.algebra.normal import Form, TooLarge
 from eomgen.checks.evaluation import Bench, bench, symbol_of
 from eomgen.checks.samples import Samples
 from eomgen.compile import Machine
@@ -142,10 +142,6 @@ def _summary(errors: Sequence[Any]) -> tuple[float, int]:
     return float(table[:, finite].max()), int(finite.sum())
 
 
-class TooLarge(Exception):
-    """An exact comparison would take too long; states are compared instead."""
-
-
 def proven(derivation: Derivation, machine: Machine) -> bool:
     """Whether the two derivations are equal in exact arithmetic; tried where they are small."""
     equations = machine.equations
@@ -179,5 +175,5 @@ def _identical(machine: Machine, nodes: Sequence[Any], forms: Sequence[Form]) ->
 
 def _bounded_product(left: Form, right: Form) -> Form:
     if len(left.terms) * len(right.terms) > LARGEST_PROOF:
-        raise TooLarge
+        raise TooLarge  # states are compared instead
     return left * right

@@ -33,9 +33,9 @@ SPECIAL = {
 }
 # what fontenc T1 with inputenc utf8 prints: ASCII, Western and Central European letters, quotes
 PRINTED = re.compile("[ -~\u00a1\u00a3\u00a7\u00ab\u00bb\u00bf-\u017e\u2013\u2014\u2018-\u201e\u2026]")
-UNIT = re.compile(r"\s*([A-Za-z]+|\d+|\*\*|\^|-|\+|[*/().%\u00b0\u00b5\u03bc\u03a9\u00b7])")
+UNIT = re.compile(r"[A-Za-z]+|\d+|\*\*|[\^+*/().% -]|[\u00b0\u00b5\u03bc\u03a9\u00b7]")
 UNIT_SIGNS = {
-    "*": r"\,", "\u00b7": r"\,", "**": "^", "%": r"\%", "\u00b0": r"{}^\circ", "\u00b5": r"\mu ",
+    "*": r"\,", " ": r"\,", "\u00b7": r"\,", "**": "^", "%": r"\%", "\u00b0": r"{}^\circ", "\u00b5": r"\mu ",
     "\u03bc": r"\mu ", "\u03a9": r"\Omega ", "Ohm": r"\Omega ",
 }  # fmt: skip
 
@@ -59,8 +59,13 @@ def _character(character: str) -> str:
 
 def unit(text: str) -> str:
     r"""A unit in math mode: N*s/m is \mathrm{N\,s/m}, m/s^2 is \mathrm{m/s^{2}}."""
-    tokens = UNIT.findall(text)
-    if "".join(tokens) != "".join(text.split()):
+    plain = re.sub(r"\s*([*/^()])\s*", r"\1", " ".join(text.split()))
+    tokens = UNIT.findall(plain)
+    if "".join(tokens) != plain:
         return rf"\text{{{escaped(text)}}}"
     spelled = "".join(UNIT_SIGNS.get(t, t) for t in tokens)
-    return rf"\mathrm{{{re.sub(r'[\^]([+-]?\d+)', r'^{\1}', spelled)}}}" if spelled else ""
+    raised = re.sub(r"\^([+-]?\d+)", r"^{\1}", spelled)
+    # half an exponent or two in a row would stop TeX
+    if re.search(r"\^(?!\{)|\}\^", raised):
+        return rf"\text{{{escaped(text)}}}"
+    return rf"\mathrm{{{raised}}}" if raised else ""

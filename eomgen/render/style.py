@@ -19,10 +19,14 @@ class Style:
     words: Callable[[str], str]  # a text of the user
     unit: Callable[[str], str]
     inline: Callable[[str], str]  # a formula inside of a sentence
-    index: Callable[[str, str], str]  # T, bob: T_bob
+    number: Callable[[str], str]  # a decimal number
+    index: Callable[..., str]  # T, bob: T_bob; names of bodies and points
+    sub: Callable[[str, str], str]  # Q, spelled symbol: Q_s
+    dotted: Callable[[str], str]  # x_bob: its rate
     partial: Callable[[str, str], str]  # dL/ds
     rate: Callable[[str], str]  # d/dt (...)
     display: Callable[[Rows], str]  # equations below each other, long ones broken
+    equation: Callable[[str, str], str]  # left = right, broken anywhere
     matrix: Callable[[Sequence[Sequence[str]]], str]
+    fits: Callable[[Sequence[Sequence[str]]], bool]  # whether a matrix goes on a line
     remark: Callable[[str], str]  # words in place of a formula
-    bold: Callable[[str], str]  # a matrix's letter

@@ -99,6 +99,18 @@ def split_sign(tree: Tree) -> tuple[bool, Tree]:
     return False, tree
 
 
+def negated(tree: Tree) -> Tree:
+    """The tree with the other sign."""
+    match tree:
+        case Number(value):
+            return Number(-value)
+        case Product(coefficient, factors, divisors):
+            return product(-coefficient, factors, divisors)
+        case Sum(terms):
+            return Sum(tuple(negated(t) for t in terms))
+    return Product(Fraction(-1), (tree,))
+
+
 def children(tree: Tree) -> tuple[Tree, ...]:
     """What a tree is made of."""
     match tree:

@@ -1,5 +1,6 @@
 """Syntax tree -> SymPy expression, exact and within limits; never by text."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -24,12 +25,36 @@ MOST_BITS = 2048
 MOST_EXPONENT = 64
 NOT_FINITE = (sp.nan, sp.zoo, sp.oo, -sp.oo)
 
-SYMPY: dict[str, Callable[..., sp.Expr]] = {
-    "sin": sp.sin, "cos": sp.cos, "tan": sp.tan, "asin": sp.asin, "acos": sp.acos,
-    "atan": sp.atan, "atan2": sp.atan2, "sinh": sp.sinh, "cosh": sp.cosh, "tanh": sp.tanh,
-    "sqrt": sp.sqrt, "exp": sp.exp, "log": sp.log, "abs": sp.Abs, "sign": sp.sign,
-    "min": sp.Min, "max": sp.Max,
-}  # fmt: skip
+UNEVALUATED = ("min", "max")  # SymPy would compare every pair of arguments
+
+
+@dataclass(frozen=True)
+class Function:
+    """A function of the language: exact, and roughly on floats."""
+
+    symbolic: Callable[..., sp.Expr]
+    estimate: Callable[..., float]
+
+
+FUNCTIONS = {
+    "sin": Function(sp.sin, math.sin),
+    "cos": Function(sp.cos, math.cos),
+    "tan": Function(sp.tan, math.tan),
+    "asin": Function(sp.asin, math.asin),
+    "acos": Function(sp.acos, math.acos),
+    "atan": Function(sp.atan, math.atan),
+    "atan2": Function(sp.atan2, math.atan2),
+    "sinh": Function(sp.sinh, math.sinh),
+    "cosh": Function(sp.cosh, math.cosh),
+    "tanh": Function(sp.tanh, math.tanh),
+    "sqrt": Function(sp.sqrt, math.sqrt),
+    "exp": Function(sp.exp, math.exp),
+    "log": Function(sp.log, math.log),
+    "abs": Function(sp.Abs, abs),
+    "sign": Function(sp.sign, lambda x: math.copysign(1.0, x)),
+    "min": Function(sp.Min, min),
+    "max": Function(sp.Max, max),
+}
 
 
 @dataclass(frozen=True)
@@ -41,61 +66,146 @@ class Lowering:
     local: Local | None = None
 
 
+@dataclass(frozen=True)
+class Lowered:
+    """An expression, and its rough value where it is a constant."""
+
+    expression: sp.Expr
+    estimate: float | None = None
+
+
 def scalar(tree: Tree, where: Lowering) -> sp.Expr:
     """The expression of a scalar formula; raises `Mistake` at the offending term."""
-    result = _scalar(tree, where)
-    if result.has(*NOT_FINITE, sp.I) or (result.is_number and result.is_extended_real is False):
-        raise Mistake(tree.span, "E203", f"'{tree.span.text}' has no finite real value")
-    if isinstance(result, sp.Rational) and _bits(result) > MOST_BITS:
-        raise Mistake(tree.span, "E202", "the number is too large")
-    return result
+    return _lowered(tree, where).expression
 
 
-def _scalar(tree: Tree, where: Lowering) -> sp.Expr:
+def _lowered(tree: Tree, where: Lowering) -> Lowered:
+    """The checked expression; every constant in it is real and fits in a double.
+
+    SymPy compares constants by evaluating them, which does not end for exp(10^18) and the like.
+    """
+    found = _combined(tree, where)
+    expression = found.expression
+    if found.estimate is not None and not math.isfinite(found.estimate):
+        raise _too_large(tree)
+    if expression.has(*NOT_FINITE, sp.I):
+        raise _no_value(tree)
+    if isinstance(expression, sp.Rational):
+        return Lowered(expression, _checked_number(expression, tree))
+    if found.estimate is not None and expression.is_extended_real is False:
+        raise _no_value(tree)
+    return found
+
+
+def _no_value(tree: Tree) -> Mistake:
+    return Mistake(tree.span, "E203", f"'{tree.span.text}' has no finite real value")
+
+
+def _too_large(tree: Tree) -> Mistake:
+    return Mistake(tree.span, "E202", f"'{tree.span.text}' is too large a number")
+
+
+def _checked_number(number: sp.Rational, tree: Tree) -> float:
+    """The number as a float, if it is not too large."""
+    estimate = _estimated(lambda: int(number.p) / int(number.q))
+    if _bits(number) > MOST_BITS or estimate == math.inf:
+        raise _too_large(tree)
+    return estimate
+
+
+def _estimated(compute: Callable[[], float]) -> float:
+    """The rough value; infinite where it overflows, zero where only SymPy can tell."""
+    try:
+        return compute()
+    except (OverflowError, ZeroDivisionError):
+        return math.inf
+    except ValueError:
+        return 0.0
+
+
+def _combined(tree: Tree, where: Lowering) -> Lowered:
+    """The operator of the tree on its lowered operands."""
     match tree:
         case Number(value, _):
-            return sp.Rational(value.numerator, value.denominator)
+            return Lowered(sp.Rational(value.numerator, value.denominator))
         case Quantity(value, _, _, _):
-            return value
+            return Lowered(value, float(value))
         case Name():
             return _name(tree, where)
         case Sum(terms, _):
-            return sp.Add(*(sign * scalar(term, where) for sign, term in terms))
+            parts = [(sign, _lowered(term, where)) for sign, term in terms]
+            total = sp.Add(*(sign * part.expression for sign, part in parts))
+            return Lowered(total, _constant([p for _, p in parts], lambda x: _signed(parts, x)))
         case Product(factors, _):
             return _product(factors, where)
         case Power(base, exponent, _):
-            return _power(tree, scalar(base, where), scalar(exponent, where))
+            return _power(tree, _lowered(base, where), _lowered(exponent, where))
         case Call(function, arguments, _):
-            return SYMPY[function](*(scalar(argument, where) for argument in arguments))
+            return _call(tree, function, [_lowered(argument, where) for argument in arguments])
     raise Mistake(tree.span, "E502", f"'{tree.span.text}' is a vector, a scalar is needed here")
 
 
-def _name(name: Name, where: Lowering) -> sp.Expr:
+def _constant(operands: list[Lowered], compute: Callable[[list[float]], float]) -> float | None:
+    """The rough value of an operation on constants; None if an operand is none."""
+    values = [operand.estimate for operand in operands]
+    known = [value for value in values if value is not None]
+    return _estimated(lambda: compute(known)) if len(known) == len(values) else None
+
+
+def _signed(parts: list[tuple[int, Lowered]], values: list[float]) -> float:
+    return sum(sign * value for (sign, _), value in zip(parts, values, strict=True))
+
+
+def _name(name: Name, where: Lowering) -> Lowered:
     known = resolve(name, where.scene, where.use, where.local)
     if known.kind in ("point", "body"):
         raise Mistake(name.span, "E502", f"'{name.name}' is a place, a scalar is needed here")
-    return known.expressions[name.order]
+    expression = known.expressions[name.order]
+    return Lowered(expression, None if expression.free_symbols else float(expression))
 
 
-def _product(factors: tuple[tuple[int, Tree], ...], where: Lowering) -> sp.Expr:
-    result = sp.S.One
+def _product(factors: tuple[tuple[int, Tree], ...], where: Lowering) -> Lowered:
+    result = Lowered(sp.S.One, 1.0)
     for side, factor in factors:
-        value = scalar(factor, where)
-        if side < 0 and value == 0:
+        part = _lowered(factor, where)
+        if side < 0 and part.expression == 0:
             raise Mistake(factor.span, "E203", f"division by '{factor.span.text}', which is zero")
-        result = result * value**side
-        if isinstance(result, sp.Rational) and _bits(result) > MOST_BITS:
-            raise Mistake(factor.span, "E202", "the number is too large")
+        estimate = _constant([result, part], _times if side > 0 else _over)
+        result = Lowered(result.expression * part.expression**side, estimate)
+        if isinstance(result.expression, sp.Rational):
+            result = Lowered(result.expression, _checked_number(result.expression, factor))
     return result
 
 
-def _power(tree: Power, base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
-    if isinstance(exponent, sp.Rational):
-        if max(abs(exponent.p), exponent.q) > MOST_EXPONENT:
+def _times(values: list[float]) -> float:
+    return values[0] * values[1]
+
+
+def _over(values: list[float]) -> float:
+    return values[0] / values[1]
+
+
+def _power(tree: Power, base: Lowered, exponent: Lowered) -> Lowered:
+    number, power = base.expression, exponent.expression
+    if isinstance(power, sp.Rational):
+        if max(abs(power.p), power.q) > MOST_EXPONENT:
             raise Mistake(tree.exponent.span, "E202", f"an exponent is at most {MOST_EXPONENT}")
-        if isinstance(base, sp.Rational) and _bits(base) * abs(exponent) > MOST_BITS:
-            raise Mistake(tree.span, "E202", f"'{tree.span.text}' is too large a number")
-    return base**exponent
+        if isinstance(number, sp.Rational) and _bits(number) * abs(power) > MOST_BITS:
+            raise _too_large(tree)
+    estimate = _constant([base, exponent], lambda x: math.pow(*x))
+    if estimate == math.inf and number != 0:
+        raise _too_large(tree)
+    return Lowered(number**power, estimate)
+
+
+def _call(tree: Tree, function: str, arguments: list[Lowered]) -> Lowered:
+    estimate = _constant(arguments, lambda x: FUNCTIONS[function].estimate(*x))
+    expressions = [argument.expression for argument in arguments]
+    if estimate == math.inf:
+        raise _too_large(tree)
+    if function in UNEVALUATED and estimate is None:
+        return Lowered(FUNCTIONS[function].symbolic(*expressions, evaluate=False))
+    return Lowered(FUNCTIONS[function].symbolic(*expressions), estimate)
 
 
 def _bits(number: sp.Rational) -> int:
@@ -162,7 +272,7 @@ def _scaled_vector(tree: Product, factors: tuple[tuple[int, Tree], ...], where: 
         message = "a product holds one vector at most, and none is divided by"
         raise Mistake(tree.span, "E502", message)
     scalars = tuple((s, f) for s, f in factors if f is not vectors[0][1])
-    return vector(vectors[0][1], where).scaled(_product(scalars, where))
+    return vector(vectors[0][1], where).scaled(_product(scalars, where).expression)
 
 
 def is_vector(tree: Tree, where: Lowering) -> bool:
