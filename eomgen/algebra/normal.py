@@ -17,6 +17,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
+from eomgen.errors import UsageError
+
 Monomial = tuple[tuple[int, int], ...]  # (atom, exponent), atoms ascending
 Wave = tuple[tuple[int, "int | Fraction"], ...]  # (angle, factor), angles ascending
 Key = tuple[Monomial, Wave, bool]  # True: sine; the empty wave is 1

@@ -29,9 +29,7 @@ class Bench:
     @property
     def size(self) -> int:
         """The number of samples."""
-        return max(
-            (len(v) for v in self.leaves.values() if hasattr(v, "shape") and v.shape), default=1
-        )
+        return max((len(v) for v in self.leaves.values() if getattr(v, "shape", ())), default=1)
 
     def nodes(self, nodes: Sequence[Node]) -> list[Any]:
         """Values of graph nodes."""

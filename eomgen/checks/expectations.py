@@ -74,7 +74,8 @@ def _equations(machine: Machine, at: Bench) -> list[str]:
 
 def summands(expression: sp.Expr) -> Sequence[sp.Expr]:
     """The terms of a sum."""
-    return sp.Add.make_args(sp.expand_mul(expression))
+    terms: Sequence[sp.Expr] = sp.Add.make_args(sp.expand_mul(expression))
+    return terms
 
 
 def _conserved(machine: Machine, at: Bench) -> list[str]:
@@ -160,8 +161,8 @@ def _shown(position: Mapping[str, sp.Expr]) -> str:
 def worst(terms: Sequence[Node], at: Bench) -> float:
     """|sum| over the largest sum of |terms| of all states: 0 where the terms vanish."""
     with np.errstate(all="ignore"):
-        values = [np.asarray(v, float) + np.zeros(at.size) for v in at.nodes(terms)]
-        scale = sum(abs(v) for v in values)
-        error = abs(sum(values)) / (scale + (scale == 0))
+        values = np.array([v + np.zeros(at.size) for v in at.nodes(terms)])
+        scale = np.abs(values).sum(axis=0)
+        error = np.abs(values.sum(axis=0)) / (scale + (scale == 0))
     finite = error[np.isfinite(error)]
     return float(finite.max()) if finite.size else float("inf")

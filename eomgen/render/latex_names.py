@@ -76,6 +76,12 @@ def dotted(name: str, dots: int) -> str:
     return f"{DOTS[dots]}{{{body}}}{name[len(body) :]}"
 
 
+def unknown(name: str) -> str:
+    """A name that is no symbol of the model: delta W, omega."""
+    bare = name.removeprefix(virtual_name(""))
+    return spelled(name) if bare == name else rf"\delta {spelled(bare)}"
+
+
 def table(model: Model) -> Mapping[str, str]:
     """The LaTeX of every symbol of a model by the symbol's name."""
     names = {"t": "t", "pi": r"\pi"}

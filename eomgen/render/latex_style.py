@@ -56,7 +56,7 @@ def style(model: Model) -> Style:
     names = latex_names.table(model)
     return Style(
         formula=lambda tree: latex(tree, names),
-        symbol=lambda name: names.get(name, latex_names.spelled(name)),
+        symbol=lambda name: names.get(name) or latex_names.unknown(name),
         words=escaped,
         unit=unit,
         inline=lambda formula: f"${formula}$",

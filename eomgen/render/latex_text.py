@@ -32,7 +32,9 @@ SPECIAL = {
     "\u221e": r"\ensuremath{\infty}",
 }
 # what fontenc T1 with inputenc utf8 prints: ASCII, Western and Central European letters, quotes
-PRINTED = re.compile("[ -~\u00a1\u00a3\u00a7\u00ab\u00bb\u00bf-\u017e\u2013\u2014\u2018-\u201e\u2026]")
+PRINTED = re.compile(
+    "[ -~\u00a1\u00a3\u00a7\u00ab\u00bb\u00bf-\u017e\u2013\u2014\u2018-\u201e\u2026]"
+)
 UNIT = re.compile(r"[A-Za-z]+|\d+|\*\*|[\^+*/().% -]|[\u00b0\u00b5\u03bc\u03a9\u00b7]")
 UNIT_SIGNS = {
     "*": r"\,", " ": r"\,", "\u00b7": r"\,", "**": "^", "%": r"\%", "\u00b0": r"{}^\circ", "\u00b5": r"\mu ",

@@ -7,16 +7,27 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from eomgen.algebra import normal
-from eomgen.mechanics.equations import Contribution, Derivation, LagrangeRow
-from eomgen.model import AXES, SPACES, TIME, Coordinate
+from eomgen.algebra.normal import Form
+from eomgen.mechanics.equations import Contribution, Derivation, Equation, LagrangeRow
+from eomgen.model import AXES, SPACES, Coordinate
 from eomgen.render import arrange, arrange_equation, latex_style, notes_data, notes_matrix
 from eomgen.render import text_style, tree, words
-from eomgen.render.arrange_equation import Arranged
-from eomgen.render.notes_page import LARGEST, How, Page, arranged, formula, joined, spelled
+from eomgen.render.notes_page import (
+    ENOUGH,
+    LARGEST,
+    How,
+    Page,
+    arranged,
+    formula,
+    joined,
+    spelled,
+)
 from eomgen.render.style import Style
+from eomgen.render.tree import Tree
+
+PARTS = ("inertia", "damping", "elastic", "gravity", "other", "applied")
 
 
 @dataclass(frozen=True)
@@ -105,7 +116,8 @@ def _energies(page: Page) -> dict[str, object]:
     lagrangian = ""
     if not isinstance(kinetic, int) and not isinstance(potential, int):
         difference = joined([kinetic, tree.negated(potential)])
-        lagrangian = page.style.display([("L", "T - V"), ("", page.style.formula(difference))])
+        minus = page.style.formula(tree.negated(tree.ONE))[0]
+        lagrangian = page.style.display([(f"L = T {minus} V", page.style.formula(difference))])
     return {
         "kinetic": _energy(page, "T", d.kinetic, arrange.kinetic, spelled(page, kinetic)),
         "potential": _energy(page, "V", d.potential, arrange.potential, spelled(page, potential)),
@@ -118,3 +130,86 @@ def _energies(page: Page) -> dict[str, object]:
             formula(page, arrange.dissipation, d.dissipation_function),
         ),
     }
+
+
+def _energy(
+    page: Page, letter: str, shares: Sequence[Contribution[Form]], how: How, total: str
+) -> str:
+    """Rows of the shares that are not zero, by owner, then the whole; nothing if all are zero."""
+    owners: dict[str, list[Tree | int]] = {}
+    for share in shares:
+        if share.value.terms:
+            owner = page.words["given"] if share.kind == "formula" else share.name
+            owners.setdefault(owner, []).append(arranged(page, how, share.value))
+    rows = [(page.style.index(letter, owner), _sum(page, found)) for owner, found in owners.items()]
+    if not rows:
+        return ""
+    single = len(rows) == 1 and rows[0][1] == total
+    return page.style.display([*(() if single else rows), (letter, total)])
+
+
+def _sum(page: Page, found: Sequence[Tree | int]) -> str:
+    trees = [t for t in found if not isinstance(t, int)]
+    if len(trees) == len(found):
+        return page.style.formula(joined(trees))
+    return spelled(page, sum(t if isinstance(t, int) else tree.size(t) for t in found))
+
+
+def _forces(page: Page) -> dict[str, object]:
+    """The virtual work of what has no potential, and Q; nothing where there is no such force."""
+    d, style = page.derivation, page.style
+    ring = d.kinetic_energy.ring
+    work = normal.total(ring, (share.value for share in d.virtual_work))
+    rows = [
+        (style.sub("Q", style.symbol(c.symbol.name)), formula(page, arrange.loads, row.force))
+        for c, row in _by_coordinate(page)
+    ]
+    total = (style.symbol("delta W"), formula(page, arrange.work, work))
+    return {"forces": style.display([total, *rows]) if work.terms else ""}
+
+
+def _step(page: Page, coordinate: Coordinate, row: LagrangeRow) -> dict[str, str]:
+    """The partial derivatives of one coordinate."""
+    style, own = page.style, coordinate.acceleration.name
+    q, rate = style.symbol(coordinate.symbol.name), style.symbol(coordinate.rate.name)
+    momentum = style.partial("L", rate)
+
+    def moving(form: Form) -> str:
+        return formula(page, lambda a, f: arrange.motion(a, f, own), form)
+
+    rows = [
+        (momentum, moving(row.momentum)),
+        (style.rate(momentum), moving(row.momentum_rate)),
+        (style.partial("L", q), moving(row.slope)),
+    ]
+    if page.derivation.dissipation:
+        rows.append((style.partial("D", rate), moving(row.dissipation)))
+    if row.force.terms:
+        rows.append((style.sub("Q", q), formula(page, arrange.loads, row.force)))
+    return {"symbol": style.inline(q), "rows": style.display(rows)}
+
+
+def _equations(page: Page) -> dict[str, object]:
+    """The equations of motion, in the speeds where the spec has some."""
+    d, style = page.derivation, page.style
+    speeds = d.model.speeds
+    rates = zip((style.symbol(c.rate.name) for c in d.model.coordinates), d.rates, strict=False)
+    return {
+        "rates": style.display([(q, formula(page, arrange.motion, r)) for q, r in rates]),
+        "equations": tuple(_equation(page, e) for e in d.equations),
+        "in_speeds": bool(speeds),
+    }
+
+
+def _equation(page: Page, row: Equation) -> dict[str, str]:
+    """One equation, and the words before it: what it was divided by."""
+    style = page.style
+    count = sum(len(getattr(row, part).terms) for part in PARTS)
+    if count > ENOUGH:
+        return {"body": style.equation(spelled(page, count), "0"), "said": page.words["equation"]}
+    found = arrange_equation.equation(page.arranger, row)
+    size = tree.size(found.left)
+    left = spelled(page, size if size > LARGEST else found.left)
+    divisor = "" if found.divisor == tree.ONE else style.inline(style.formula(found.divisor))
+    said = page.words["divided"].format(divisor=divisor) if divisor else page.words["equation"]
+    return {"body": style.equation(left, style.formula(found.right)), "said": said}

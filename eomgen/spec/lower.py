@@ -25,6 +25,8 @@ MOST_BITS = 2048
 MOST_EXPONENT = 64
 NOT_FINITE = (sp.nan, sp.zoo, sp.oo, -sp.oo)
 
+LARGEST_ANGLE = 2.0**53  # a double beyond it has no digit left for the angle
+LARGEST_EXPONENT = 700.0  # exp(-700) is still a double with all its digits
 UNEVALUATED = ("min", "max")  # SymPy would compare every pair of arguments
 
 
@@ -34,12 +36,13 @@ class Function:
 
     symbolic: Callable[..., sp.Expr]
     estimate: Callable[..., float]
+    limit: float = math.inf  # of a constant argument
 
 
 FUNCTIONS = {
-    "sin": Function(sp.sin, math.sin),
-    "cos": Function(sp.cos, math.cos),
-    "tan": Function(sp.tan, math.tan),
+    "sin": Function(sp.sin, math.sin, LARGEST_ANGLE),
+    "cos": Function(sp.cos, math.cos, LARGEST_ANGLE),
+    "tan": Function(sp.tan, math.tan, LARGEST_ANGLE),
     "asin": Function(sp.asin, math.asin),
     "acos": Function(sp.acos, math.acos),
     "atan": Function(sp.atan, math.atan),
@@ -48,7 +51,7 @@ FUNCTIONS = {
     "cosh": Function(sp.cosh, math.cosh),
     "tanh": Function(sp.tanh, math.tanh),
     "sqrt": Function(sp.sqrt, math.sqrt),
-    "exp": Function(sp.exp, math.exp),
+    "exp": Function(sp.exp, math.exp, LARGEST_EXPONENT),
     "log": Function(sp.log, math.log),
     "abs": Function(sp.Abs, abs),
     "sign": Function(sp.sign, lambda x: math.copysign(1.0, x)),
@@ -86,8 +89,7 @@ def _lowered(tree: Tree, where: Lowering) -> Lowered:
     """
     found = _combined(tree, where)
     expression = found.expression
-    if found.estimate is not None and not math.isfinite(found.estimate):
-        raise _too_large(tree)
+    _check_estimate(found.estimate, tree)
     if expression.has(*NOT_FINITE, sp.I):
         raise _no_value(tree)
     if isinstance(expression, sp.Rational):
@@ -102,7 +104,7 @@ def _no_value(tree: Tree) -> Mistake:
 
 
 def _too_large(tree: Tree) -> Mistake:
-    return Mistake(tree.span, "E202", f"'{tree.span.text}' is too large a number")
+    return Mistake(tree.span, "E202", f"'{tree.span.text}' is too large or too small a number")
 
 
 def _checked_number(number: sp.Rational, tree: Tree) -> float:
@@ -114,13 +116,20 @@ def _checked_number(number: sp.Rational, tree: Tree) -> float:
 
 
 def _estimated(compute: Callable[[], float]) -> float:
-    """The rough value; infinite where it overflows, zero where only SymPy can tell."""
+    """The rough value; infinite where it overflows, not a number where it is not real."""
     try:
         return compute()
     except (OverflowError, ZeroDivisionError):
         return math.inf
     except ValueError:
-        return 0.0
+        return math.nan
+
+
+def _check_estimate(estimate: float | None, tree: Tree) -> None:
+    """Raise `Mistake` before SymPy sees a constant that it cannot compare."""
+    if estimate is None or math.isfinite(estimate):
+        return
+    raise _no_value(tree) if math.isnan(estimate) else _too_large(tree)
 
 
 def _combined(tree: Tree, where: Lowering) -> Lowered:
@@ -193,7 +202,8 @@ def _power(tree: Power, base: Lowered, exponent: Lowered) -> Lowered:
         if isinstance(number, sp.Rational) and _bits(number) * abs(power) > MOST_BITS:
             raise _too_large(tree)
     estimate = _constant([base, exponent], lambda x: math.pow(*x))
-    if estimate == math.inf and number != 0:
+    _check_estimate(estimate, tree)
+    if estimate == 0 and number != 0:
         raise _too_large(tree)
     return Lowered(number**power, estimate)
 
@@ -201,7 +211,9 @@ def _power(tree: Power, base: Lowered, exponent: Lowered) -> Lowered:
 def _call(tree: Tree, function: str, arguments: list[Lowered]) -> Lowered:
     estimate = _constant(arguments, lambda x: FUNCTIONS[function].estimate(*x))
     expressions = [argument.expression for argument in arguments]
-    if estimate == math.inf:
+    _check_estimate(estimate, tree)
+    limit = FUNCTIONS[function].limit
+    if any(abs(argument.estimate or 0) > limit for argument in arguments):
         raise _too_large(tree)
     if function in UNEVALUATED and estimate is None:
         return Lowered(FUNCTIONS[function].symbolic(*expressions, evaluate=False))
