@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import cached_property
 
 import pytest
-from scenes import NAMES, PENDULUM, model, study
+from studies import NAMES, PENDULUM, model, study
 
 from eomgen import compile
 from eomgen.algebra.graph import Node

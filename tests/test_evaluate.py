@@ -5,7 +5,7 @@ from functools import cache
 
 import mpmath
 import pytest
-from scenes import NAMES, model, study
+from studies import NAMES, model, study
 
 from eomgen import evaluate, states
 from eomgen.checks import samples

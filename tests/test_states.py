@@ -4,7 +4,7 @@ import json
 
 import pytest
 import sympy as sp
-from scenes import PENDULUM, model
+from studies import PENDULUM, model
 
 from eomgen import states
 from eomgen.errors import UsageError

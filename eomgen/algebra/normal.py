@@ -233,7 +233,7 @@ def _collect_beat(
     """Add c * monomial * wave * wave as waves of the sum and of the difference of the angles."""
     (w1, s1), (w2, s2) = waves
     (up, up_sign), (down, down_sign) = ring.beat(w1, w2)
-    half = Fraction(c, 2) if isinstance(c, int) and c % 2 else (c // 2 if type(c) is int else c / 2)
+    half = exact(Fraction(c, 2))
     sine = s1 != s2
     # sin a sin b = (cos(a-b) - cos(a+b))/2;  cos a sin b = (sin(a+b) - sin(a-b))/2
     up_c = -half if s1 and s2 else half

@@ -37,8 +37,8 @@ PRINTED = re.compile(
 )
 UNIT = re.compile(r"[A-Za-z]+|\d+|\*\*|[\^+*/().% -]|[\u00b0\u00b5\u03bc\u03a9\u00b7]")
 UNIT_SIGNS = {
-    "*": r"\,", " ": r"\,", "\u00b7": r"\,", "**": "^", "%": r"\%", "\u00b0": r"{}^\circ", "\u00b5": r"\mu ",
-    "\u03bc": r"\mu ", "\u03a9": r"\Omega ", "Ohm": r"\Omega ",
+    "*": r"\,", " ": r"\,", "\u00b7": r"\,", "**": "^", "%": r"\%", "\u00b0": r"{}^\circ",
+    "\u00b5": r"\mu ", "\u03bc": r"\mu ", "\u03a9": r"\Omega ", "Ohm": r"\Omega ",
 }  # fmt: skip
 
 

@@ -12,8 +12,16 @@ from eomgen.algebra import normal
 from eomgen.algebra.normal import Form
 from eomgen.mechanics.equations import Contribution, Derivation, Equation, LagrangeRow
 from eomgen.model import AXES, SPACES, Coordinate
-from eomgen.render import arrange, arrange_equation, latex_style, notes_data, notes_matrix
-from eomgen.render import text_style, tree, words
+from eomgen.render import (
+    arrange,
+    arrange_equation,
+    latex_style,
+    notes_data,
+    notes_matrix,
+    text_style,
+    tree,
+    words,
+)
 from eomgen.render.notes_page import (
     ENOUGH,
     LARGEST,
