@@ -361,4 +361,11 @@ BAD = (
     ),
     Bad("a value that divides by zero", changed("l: 1 m", "l: 1 m, a: 0, b: 1/a"), "5:42 E203"),
     Bad("dof too large", extended("expect: {dof: 9999999999999}"), "11:15 E111"),
+    Bad("body called world", extended("  world: {mass: m, at: P}"), "11:3 E304"),
+    Bad("number tower", changed("mass: m", "mass: ((3*m)^64)^64"), "10:15 E202"),
+    Bad("hanging exponential", changed("mass: m", "mass: m*cos(exp(exp(50)))"), "10:21 E202"),
+    Bad(
+        "spring along a constant", extended("springs: [{along: l, stiffness: 1 N/m}]"), "11:19 E510"
+    ),
+    Bad("two units without product", changed("mass: m", "mass: 2 m"), "10:17 E201"),
 )

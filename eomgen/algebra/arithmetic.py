@@ -34,7 +34,7 @@ class Arithmetic:
 
     def require_positive(self, place: int | str, pivot: Any, scale: Any) -> None:
         """Raise SingularMassMatrix unless pivot > tolerance * scale (everywhere in an array)."""
-        if not self.holds(pivot > self.tolerance * scale):
+        if not self.holds(pivot > self.tolerance * abs(scale)):
             where = place if isinstance(place, str) else f"in row {place + 1}"
             raise ldl.SingularMassMatrix(where, pivot)
 

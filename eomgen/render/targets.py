@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 import jinja2
 
-from eomgen.render import code_context
+from eomgen.render import code_context, notes
 from eomgen.render.names import module
 from eomgen.render.templating import fill
 
@@ -33,6 +33,11 @@ class Target:
 
 
 TARGETS = {
+    "latex": Target(
+        "lecture notes: pdflatex with amsmath",
+        {"{name}.tex": "latex/notes.tex.j2"},
+        notes.latex_context,
+    ),
     "c": Target(
         "C99 header and source",
         {"{name}.h": "c/model.h.j2", "{name}.c": "c/model.c.j2"},
@@ -42,6 +47,11 @@ TARGETS = {
         "Python module that needs NumPy only",
         {"{module}.py": "python/model.py.j2"},
         code_context.python,
+    ),
+    "text": Target(
+        "Unicode text for the terminal",
+        {"{name}.txt": "text/derivation.txt.j2"},
+        notes.text_context,
     ),
 }
 

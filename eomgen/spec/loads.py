@@ -9,6 +9,7 @@ from eomgen.dimension import ENERGY, FORCE, LENGTH, NONE, TIME, Dimension
 from eomgen.model import Damper, Energy, Force, Moment, Spring
 from eomgen.spec.formulas import scalar, tree_of, vector
 from eomgen.spec.ledger import CONSEQUENCE, Mistake
+from eomgen.spec.names import WORLD
 from eomgen.spec.places import body_name, pair, place_name
 from eomgen.spec.reader import Entry, Mapping, Node, Scalar, Sequence
 from eomgen.spec.scope import Local, Scene, Wanted
@@ -165,7 +166,7 @@ def _ends(
 
 def _axes(keys: Mapping, scene: Scene) -> str | None:
     node = keys.get("in")
-    if node is None or (isinstance(node, Scalar) and node.text == "world"):
+    if node is None or (isinstance(node, Scalar) and node.text == WORLD):
         return None
     return body_name(node, scene)
 

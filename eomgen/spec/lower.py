@@ -199,7 +199,9 @@ def _power(tree: Power, base: Lowered, exponent: Lowered) -> Lowered:
     if isinstance(power, sp.Rational):
         if max(abs(power.p), power.q) > MOST_EXPONENT:
             raise Mistake(tree.exponent.span, "E202", f"an exponent is at most {MOST_EXPONENT}")
-        if isinstance(number, sp.Rational) and _bits(number) * abs(power) > MOST_BITS:
+        # SymPy raises a coefficient at once: (3*x)^2 is 9*x^2
+        coefficient, _ = number.as_coeff_Mul()
+        if isinstance(coefficient, sp.Rational) and _bits(coefficient) * abs(power) > MOST_BITS:
             raise _too_large(tree)
     estimate = _constant([base, exponent], lambda x: math.pow(*x))
     _check_estimate(estimate, tree)

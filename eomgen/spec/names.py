@@ -13,6 +13,7 @@ from eomgen.spec.scope import PRIMES, Known
 from eomgen.spec.structure import is_misspelt
 
 MOST_CHARACTERS = 60
+WORLD = "world"  # the axes that are no body's
 KINDS = {  # key of the file -> kind of name, number of derivatives it has
     "parameters": ("parameter", 0),
     "coordinates": ("coordinate", 2),
@@ -52,7 +53,7 @@ def are_complete(root: Mapping) -> bool:
 def check(key: Scalar, names: dict[str, Known]) -> Scalar:
     """The key, if it is free and a proper name; else raises `Mistake`."""
     name = key.text
-    if name in RESERVED:
+    if name in (*RESERVED, WORLD):
         raise Mistake(key, "E304", f"'{name}' is a word of the language", "choose another name")
     if not NAME.fullmatch(name) or len(name) > MOST_CHARACTERS:
         hint = "letters, digits and '_', a letter first"

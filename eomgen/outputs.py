@@ -1,0 +1,160 @@
+"""What a checked study becomes: files by target, a summary, and the words of the check line."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import ceil, log10
+from pathlib import Path
+
+from eomgen.errors import EomgenError
+from eomgen.render.notes import Notes
+from eomgen.render.targets import TARGETS, Named, render
+from eomgen.render.templating import environment
+from eomgen.study import Report, Study
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What the user asked for."""
+
+    targets: tuple[str, ...]
+    language: str = "en"
+    templates: Path | None = None
+    steps: bool = False
+
+
+def _notes(study: Study, wish: Wish) -> Named:
+    line = check_line(study.report, wish.language)
+    return Notes(study.derivation, wish.language, line, wish.steps)
+
+
+def _program(study: Study, wish: Wish) -> Named:
+    return study.program
+
+
+SUBJECTS: dict[str, Callable[[Study, Wish], Named]] = {
+    "latex": _notes,
+    "text": _notes,
+    "c": _program,
+    "python": _program,
+}
+
+
+def rendered(study: Study, wish: Wish) -> dict[str, str]:
+    """File name -> text for every target that was asked for.
+
+    Raises:
+        UsageError: a template of the user is wrong.
+    """
+    templates = environment(wish.templates)
+    made: dict[str, str] = {}
+    for target in dict.fromkeys(wish.targets):
+        made |= render(SUBJECTS[target](study, wish), TARGETS[target], templates)
+    return made
+
+
+WORDS = {
+    "en": {
+        "checked": "checked",
+        "routes": "Lagrange = Newton-Euler",
+        "energies": "Lagrange in closed form = Lagrange on the graph",
+        "proven": "identical in exact arithmetic and",
+        "states": "at {states} random states, worst relative error below {error}",
+        "digits": " (in {digits} digits)",
+        "power": "power balance below {error}",
+        "terms": "dimensions of {terms} terms",
+        "claims": "{claims} claims of the author",
+    },
+    "es": {
+        "checked": "comprobado",
+        "routes": "Lagrange = Newton-Euler",
+        "energies": "Lagrange en forma cerrada = Lagrange en el grafo",
+        "proven": "idénticas en aritmética exacta y",
+        "states": "en {states} estados aleatorios, peor error relativo menor que {error}",
+        "digits": " (con {digits} dígitos)",
+        "power": "balance de potencia menor que {error}",
+        "terms": "dimensiones de {terms} términos",
+        "claims": "{claims} afirmaciones del autor",
+    },
+}
+
+
+def check_line(report: Report, language: str) -> str:
+    """How the tool knows that what it prints is true, in one line."""
+    words, found = WORDS[language], report.agreement
+    states = words["states"].format(states=found.states, error=bound(found.error))
+    digits = words["digits"].format(digits=found.digits) if found.digits > 16 else ""
+    proven = f"{words['proven']} " if found.proven else ""
+    routes = words["routes"] if report.projected else words["energies"]
+    parts = [
+        f"{routes}, {proven}{states}{digits}",
+        words["power"].format(error=bound(report.power)),
+    ]
+    if report.terms:
+        parts.append(words["terms"].format(terms=report.terms))
+    if report.claims:
+        parts.append(words["claims"].format(claims=report.claims))
+    return f"{words['checked']}: " + "; ".join(parts)
+
+
+def bound(error: float) -> str:
+    """A power of ten above the error: the last bits differ between machines, this does not."""
+    return f"1e{ceil(log10(max(error, 1e-15)))}"
+
+
+def summary(spec: str, study: Study, format_: str) -> str:
+    """One line, or one JSON object, for a spec that passed."""
+    return SUMMARIES[format_](spec, study)
+
+
+def _text_summary(spec: str, study: Study) -> str:
+    count = len(study.model.coordinates)
+    freedom = f"{count} degree{'s' if count > 1 else ''} of freedom"
+    return f"{spec}: {freedom}; {check_line(study.report, 'en')}"
+
+
+def _json_summary(spec: str, study: Study) -> str:
+    report = study.report
+    return json.dumps(
+        {
+            "file": spec,
+            "degrees_of_freedom": len(study.model.coordinates),
+            "states": report.agreement.states,
+            "relative_error": report.agreement.error,
+            "proven": report.agreement.proven,
+            "power_balance": report.power,
+            "terms": report.terms,
+            "claims": report.claims,
+        }
+    )
+
+
+def _github_summary(spec: str, study: Study) -> str:
+    return f"::notice file={spec}::{check_line(study.report, 'en')}"
+
+
+SUMMARIES: dict[str, Callable[[str, Study], str]] = {
+    "text": _text_summary,
+    "json": _json_summary,
+    "github": _github_summary,
+}
+
+
+def complaint(error: EomgenError, format_: str, source: str) -> str:
+    """A mistake without a place in the text, one line for each."""
+    return COMPLAINTS[format_](str(error), source)
+
+
+COMPLAINTS: dict[str, Callable[[str, str], str]] = {
+    "text": lambda message, source: "\n".join(
+        f"{source}: error: {line}" for line in message.splitlines()
+    ),
+    "json": lambda message, source: json.dumps(
+        [{"file": source, "message": line} for line in message.splitlines()], ensure_ascii=False
+    ),
+    "github": lambda message, source: "\n".join(
+        f"::error file={source}::{line}" for line in message.splitlines()
+    ),
+}
