@@ -368,4 +368,7 @@ BAD = (
         "spring along a constant", extended("springs: [{along: l, stiffness: 1 N/m}]"), "11:19 E510"
     ),
     Bad("two units without product", changed("mass: m", "mass: 2 m"), "10:17 E201"),
+    Bad("speed over a rate", extended("speeds: {u: l^2/phi'}"), "11:13 E506"),
+    Bad("product of rates", extended("speeds: {u: phi'*phi'}"), "11:13 E506"),
+    Bad("sine of a rate", extended("speeds: {u: sin(phi')}"), "11:13 E506, 11:17 E404"),
 )

@@ -132,6 +132,14 @@ def test_speed_in_a_formula_stands_for_its_own_formula():
     assert read(text).outputs[0].formula - expected == 0
 
 
+def test_rate_of_a_speed_knows_time_and_prescribed_motion():
+    text = BASE + "prescribed: {w: sin(sqrt(g/l)*t)}\nspeeds: {u: w*phi'*t}\noutputs: {a: u'}\n"
+    w, w_rate, rate, acceleration = real("w", "w'", "phi'", "phi''")
+    t = sp.Symbol("t", real=True)
+    expected = w_rate * rate * t + w * acceleration * t + w * rate
+    assert sp.expand(read(text).outputs[0].formula - expected) == 0
+
+
 def test_quantity_may_stand_where_a_formula_does():
     model = read(
         BASE.replace("mass: m", "mass: 500000 mg").replace("at: P", "at: P, angle: 30 deg")

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
-import numpy as np
-
-from eomgen.algebra.arithmetic import evaluate, mpmath_arithmetic, over
+from eomgen.algebra.arithmetic import evaluate, mpmath_arithmetic
+from eomgen.algebra.arithmetic import over as arithmetic_over
 from eomgen.algebra.closed import ClosedForm, Evaluation
 from eomgen.algebra.graph import below
 from eomgen.algebra.normal import Form, TooLarge
-from eomgen.checks.evaluation import Bench, bench, symbol_of
+from eomgen.checks.evaluation import Bench, benches, over, symbol_of
 from eomgen.checks.samples import Samples
 from eomgen.compile import Machine
 from eomgen.errors import CheckError
@@ -21,6 +21,7 @@ from eomgen.mechanics.equations import Derivation, Equations
 FLOAT_TOLERANCE = 1e-9  # a larger disagreement in double is decided in 50 digits
 DIGITS = 50
 EXACT_TOLERANCE = 1e-30
+DECIDING_STATES = 5
 LARGEST_PROOF = 600  # nodes; and no intermediate form with more terms than this
 
 
@@ -40,64 +41,39 @@ def compare(derivation: Derivation, machine: Machine, samples: Samples) -> Agree
     Raises:
         CheckError: they differ, or no sampled state is regular.
     """
-    error, states = worst(derivation, bench(machine, samples), samples.accelerations)
+    errors = over(benches(machine, samples), partial(worst, derivation))
     digits = 16
-    if error > FLOAT_TOLERANCE:
-        error, states, digits = decided(derivation, machine, samples)
-    return Agreement(states, error, digits, proven(derivation, machine))
+    if max(errors) > FLOAT_TOLERANCE:
+        errors, digits = decided(derivation, machine, samples), DIGITS
+    return Agreement(len(errors), max(errors), digits, proven(derivation, machine))
 
 
-def decided(derivation: Derivation, machine: Machine, samples: Samples) -> tuple[float, int, int]:
-    """The worst error in 50 digits, for states where doubles lose too many.
+def decided(derivation: Derivation, machine: Machine, samples: Samples) -> list[float]:
+    """The errors in 50 digits, for scenes where doubles lose too many.
 
     Raises:
         CheckError: the two derivations differ.
     """
-    arithmetic, errors = mpmath_arithmetic(DIGITS), []
-    for one in singly(samples, 5):
-        arguments = [column[0] for column in one.accelerations]
-        found, _ = worst(derivation, bench(machine, one, arithmetic), arguments)
-        errors.append(found)
+    exact = benches(machine, samples, mpmath_arithmetic(DIGITS), DECIDING_STATES)
+    errors = over(exact, partial(worst, derivation))
     if max(errors) > EXACT_TOLERANCE:
         raise CheckError(
             "Lagrange's equations and Newton-Euler's differ, relative error "
-            f"{float(max(errors)):.1e} in {DIGITS} digits: this is a defect of eomgen, "
+            f"{max(errors):.1e} in {DIGITS} digits: this is a defect of eomgen, "
             "nothing was written"
         )
-    return float(max(errors)), len(errors), DIGITS
+    return errors
 
 
-def singly(samples: Samples, count: int) -> Iterator[Samples]:
-    """The first samples one by one, as scalars."""
-
-    def pick(columns: list[list[float]], index: int) -> list[Any]:
-        return [column[index] for column in columns]
-
-    for i in range(min(count, samples.count)):
-        yield replace(
-            samples,
-            count=1,
-            time=samples.time[i],  # type: ignore[arg-type]
-            state=pick(samples.state, i),
-            inputs=pick(samples.inputs, i),
-            parameters=pick(samples.parameters, i),
-            accelerations=[[a[i]] for a in samples.accelerations],
-        )
-
-
-def worst(derivation: Derivation, at: Bench, accelerations: Sequence[Any]) -> tuple[float, int]:
+def worst(derivation: Derivation, at: Bench, accelerations: Sequence[float]) -> float:
     """The largest difference of the residuals M u' + h - Q over the size of their terms."""
-    number = at.arithmetic.number
-    speeding = [number(a) for a in accelerations]
-    equations = at.machine.equations
-    with np.errstate(all="ignore"):
-        graph = _values(equations, at.nodes)
-        form = at.forms()
-        closed = _values(derivation.matrix, lambda forms: [form(f) for f in forms])
-        errors = [
-            _relative(left, right, speeding) for left, right in zip(graph, closed, strict=True)
-        ]
-    return _summary(errors)
+    speeding = [at.arithmetic.number(a) for a in accelerations]
+    form = at.forms()
+    graph = _values(at.machine.equations, at.nodes)
+    closed = _values(derivation.matrix, lambda forms: [form(f) for f in forms])
+    return max(
+        float(_relative(left, right, speeding)) for left, right in zip(graph, closed, strict=True)
+    )
 
 
 Row = tuple[list[Any], Any, Any]  # a row of M, h, Q
@@ -128,20 +104,6 @@ def _relative(left: Row, right: Row, accelerations: Sequence[Any]) -> Any:
     return abs(residual(left) - residual(right)) / (scale + (scale == 0))
 
 
-def _summary(errors: Sequence[Any]) -> tuple[float, int]:
-    """The worst error over the states where every value is finite, and their number."""
-    table = np.array([np.atleast_1d(e) for e in errors])
-    if table.dtype == object:
-        return max(table.ravel()), table.shape[1]
-    finite = np.isfinite(table).all(axis=0)
-    if not finite.any():
-        raise CheckError(
-            "no regular state was found to check the equations at; give `range` for the "
-            "coordinates, so that roots and quotients are defined there"
-        )
-    return float(table[:, finite].max()), int(finite.sum())
-
-
 def proven(derivation: Derivation, machine: Machine) -> bool:
     """Whether the two derivations are equal in exact arithmetic; tried where they are small."""
     equations = machine.equations
@@ -161,7 +123,7 @@ def proven(derivation: Derivation, machine: Machine) -> bool:
 def _identical(machine: Machine, nodes: Sequence[Any], forms: Sequence[Form]) -> bool:
     """The graph evaluated over the closed form, less the closed form, is zero."""
     algebra = ClosedForm()
-    arithmetic = over(algebra)
+    arithmetic = arithmetic_over(algebra)
     arithmetic = replace(
         arithmetic, functions={**arithmetic.functions, "multiply": _bounded_product}
     )
