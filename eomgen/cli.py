@@ -5,6 +5,7 @@ What a command needs is imported when it runs, so that help answers at once.
 
 from __future__ import annotations
 
+import gc
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -17,6 +18,7 @@ from eomgen.errors import EomgenError, SpecError, UsageError
 if TYPE_CHECKING:
     from eomgen.study import Study
 
+COLLECT_RARELY = 200_000  # a command lives for a second; looking for circles would take a tenth
 SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 FORMATS = click.Choice(["text", "json", "github"])
 LANGUAGES = click.Choice(["en", "es"])
@@ -251,6 +253,7 @@ def _complain(error: EomgenError, format_: str, source: str) -> None:
 
 def main() -> NoReturn:
     """The program: a user's mistake is shown in words, a defect of ours with its traceback."""
+    gc.set_threshold(COLLECT_RARELY)
     try:
         commands(prog_name="eomgen")
     except EomgenError as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
@@ -31,6 +32,7 @@ class Arithmetic:
     functions: Mapping[str, Callable[..., Any]]
     tolerance: Any = 0
     holds: Callable[[Any], bool] = bool
+    quiet: Callable[[], AbstractContextManager[Any]] = nullcontext  # no warnings inside
 
     def require_positive(self, place: int | str, pivot: Any, scale: Any) -> None:
         """Raise SingularMassMatrix unless pivot > tolerance * scale (everywhere in an array)."""
@@ -96,6 +98,7 @@ NUMPY = Arithmetic(
     },
     PIVOT_EPSILONS * 2.0**-52,
     lambda condition: bool(_numpy("all")(condition)),
+    lambda: import_module("numpy").errstate(all="ignore"),
 )
 
 

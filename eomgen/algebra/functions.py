@@ -108,7 +108,7 @@ def absolute(form: Form) -> Form:
     """|form|; a positive symbol or number is its own."""
     value = constant(form)
     if value is not None:
-        return number(form.ring, abs(value))
+        return number(form.ring, value if value > 0 else -value)
     if _is_positive(form):
         return form
     return _squared_kernel("abs", form, form * form)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import partial, reduce
 from typing import Any
 
 from eomgen.algebra.arithmetic import evaluate, mpmath_arithmetic
@@ -12,7 +12,7 @@ from eomgen.algebra.arithmetic import over as arithmetic_over
 from eomgen.algebra.closed import ClosedForm, Evaluation
 from eomgen.algebra.graph import below
 from eomgen.algebra.normal import Form, TooLarge
-from eomgen.checks.evaluation import Bench, benches, over, symbol_of
+from eomgen.checks.evaluation import Bench, benches, over, singly, symbol_of
 from eomgen.checks.samples import Samples
 from eomgen.compile import Machine
 from eomgen.errors import CheckError
@@ -54,7 +54,7 @@ def decided(derivation: Derivation, machine: Machine, samples: Samples) -> list[
     Raises:
         CheckError: the two derivations differ.
     """
-    exact = benches(machine, samples, mpmath_arithmetic(DIGITS), DECIDING_STATES)
+    exact = singly(machine, samples, mpmath_arithmetic(DIGITS), DECIDING_STATES)
     errors = over(exact, partial(worst, derivation))
     if max(errors) > EXACT_TOLERANCE:
         raise CheckError(
@@ -65,14 +65,14 @@ def decided(derivation: Derivation, machine: Machine, samples: Samples) -> list[
     return errors
 
 
-def worst(derivation: Derivation, at: Bench, accelerations: Sequence[float]) -> float:
+def worst(derivation: Derivation, at: Bench, accelerations: Sequence[Any]) -> Any:
     """The largest difference of the residuals M u' + h - Q over the size of their terms."""
-    speeding = [at.arithmetic.number(a) for a in accelerations]
     form = at.forms()
     graph = _values(at.machine.equations, at.nodes)
     closed = _values(derivation.matrix, lambda forms: [form(f) for f in forms])
-    return max(
-        float(_relative(left, right, speeding)) for left, right in zip(graph, closed, strict=True)
+    return reduce(
+        at.arithmetic.functions["max"],
+        [_relative(left, right, accelerations) for left, right in zip(graph, closed, strict=True)],
     )
 
 

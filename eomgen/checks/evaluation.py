@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
+from math import isfinite
 from typing import Any
 
 import sympy as sp
 
-from eomgen.algebra.arithmetic import FLOAT, Arithmetic, evaluate
+from eomgen.algebra.arithmetic import FLOAT, NUMPY, Arithmetic, evaluate
 from eomgen.algebra.closed import Evaluation
 from eomgen.algebra.graph import Node
 from eomgen.algebra.normal import Form
@@ -22,7 +23,7 @@ from eomgen.program import Read
 
 @dataclass(frozen=True)
 class Bench:
-    """A scene at one state: the values of its leaves, over one kind of number."""
+    """A scene at a state, or at many: values of its leaves, over one kind of number."""
 
     machine: Machine
     leaves: dict[Node, Any]
@@ -56,37 +57,62 @@ def symbol_of(machine: Machine) -> dict[Node, sp.Symbol]:
     return {node: s for s, node in bindings.items() if isinstance(node.datum, Read)}
 
 
-def benches(
-    machine: Machine, samples: Samples, arithmetic: Arithmetic = FLOAT, most: int = 1_000_000
-) -> Iterator[tuple[Bench, list[float]]]:
-    """(the scene, accelerations of the speeds) at each of the samples."""
-    leaves = leaves_of(machine)
-    arguments = samples.arguments()
-    for i in range(min(samples.count, most)):
-        values = {
-            leaf: arithmetic.number(arguments[leaf.datum.argument][leaf.datum.index][i])
-            for leaf in leaves
+LARGEST_SINGLY = 600  # nodes of a scene that is evaluated state by state, without NumPy
+States = Iterable[tuple[Bench, list[Any]]]
+
+
+def benches(machine: Machine, samples: Samples) -> States:
+    """(the scene, accelerations of the speeds) at each of the samples; large scenes at all."""
+    if len(machine.kinematics.algebra.number(0).graph.nodes) <= LARGEST_SINGLY:
+        return singly(machine, samples, FLOAT, samples.count)
+    everything = _bench(machine, samples.arguments(), NUMPY)
+    return [(everything, [NUMPY.number(column) for column in samples.accelerations])]
+
+
+def singly(
+    machine: Machine, samples: Samples, arithmetic: Arithmetic, count: int
+) -> Iterator[tuple[Bench, list[Any]]]:
+    """(the scene, accelerations of the speeds) at the first samples, one by one."""
+    for i in range(min(samples.count, count)):
+        arguments = {
+            name: [column[i] for column in columns] for name, columns in samples.arguments().items()
         }
-        yield Bench(machine, values, arithmetic), [column[i] for column in samples.accelerations]
+        accelerations = [arithmetic.number(column[i]) for column in samples.accelerations]
+        yield _bench(machine, arguments, arithmetic), accelerations
 
 
-States = Iterable[tuple[Bench, list[float]]]
+def _bench(
+    machine: Machine, arguments: Mapping[str, Sequence[Any]], arithmetic: Arithmetic
+) -> Bench:
+    leaves = {
+        leaf: arithmetic.number(arguments[leaf.datum.argument][leaf.datum.index])
+        for leaf in leaves_of(machine)
+    }
+    return Bench(machine, leaves, arithmetic)
+
+
 IRREGULAR = (ValueError, ZeroDivisionError, OverflowError)  # a root or quotient is not defined
 
 
-def over(states: States, error_of: Callable[[Bench, list[float]], float]) -> list[float]:
+def over(states: States, error_of: Callable[[Bench, list[Any]], Any]) -> list[float]:
     """The errors at the states where everything is defined.
 
     Raises:
         CheckError: there is no such state.
     """
-    errors = []
+    errors: list[float] = []
     for at, accelerations in states:
-        with suppress(*IRREGULAR):
-            errors.append(error_of(at, accelerations))
+        with suppress(*IRREGULAR), at.arithmetic.quiet():
+            errors += finite(error_of(at, accelerations))
     if not errors:
         raise CheckError(
             "no regular state was found to check the equations at; give `range` for the "
             "coordinates, so that roots and quotients are defined there"
         )
     return errors
+
+
+def finite(values: Any) -> list[float]:
+    """The finite ones among the values of one state, or of all states at once."""
+    found = values.tolist() if hasattr(values, "tolist") else values
+    return [float(v) for v in (found if isinstance(found, list) else [found]) if isfinite(v)]

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import sympy as sp
 
 from eomgen.algebra.graph import Node
 from eomgen.algebra.scalar import Algebra
-from eomgen.checks.evaluation import Bench, benches, over
+from eomgen.checks.evaluation import Bench, benches, finite, over
 from eomgen.checks.power import imbalance, motion_of
 from eomgen.checks.samples import Samples
 from eomgen.compile import Machine
@@ -144,13 +145,18 @@ def _equilibrium(machine: Machine, samples: Samples, position: Mapping[str, sp.E
     typical, left = [0.0] * len(loads), [0.0] * len(loads)
     for at, _ in benches(machine, samples):
         rest = _at_rest(at, position)
-        typical = [max(a, abs(v)) for a, v in zip(typical, at.nodes(loads), strict=True)]
-        left = [max(a, abs(v)) for a, v in zip(left, rest.nodes(loads), strict=True)]
+        with at.arithmetic.quiet():
+            typical = [max(a, *_sizes(v)) for a, v in zip(typical, at.nodes(loads), strict=True)]
+            left = [max(a, *_sizes(v)) for a, v in zip(left, rest.nodes(loads), strict=True)]
     return [
         f"{_shown(position)} is not an equilibrium: the equation of {name} leaves {size:.3g}"
         for name, scale, size in zip(speeds.names(model), typical, left, strict=True)
         if size > TOLERANCE * scale
     ]
+
+
+def _sizes(values: Any) -> list[float]:
+    return [abs(v) for v in finite(values)]
 
 
 def _at_rest(at: Bench, position: Mapping[str, sp.Expr]) -> Bench:

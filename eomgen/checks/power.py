@@ -17,7 +17,7 @@ import sympy as sp
 from eomgen.algebra.arithmetic import mpmath_arithmetic
 from eomgen.algebra.graph import Node
 from eomgen.checks.agreement import DECIDING_STATES, DIGITS, EXACT_TOLERANCE, FLOAT_TOLERANCE
-from eomgen.checks.evaluation import Bench, benches, over
+from eomgen.checks.evaluation import Bench, benches, over, singly
 from eomgen.checks.samples import Samples
 from eomgen.compile import Machine
 from eomgen.errors import CheckError
@@ -36,7 +36,7 @@ def balance(machine: Machine, samples: Samples) -> float:
     error = max(over(benches(machine, samples), lambda at, _: imbalance(terms, at)))
     if error <= FLOAT_TOLERANCE:
         return error
-    exact = benches(machine, samples, mpmath_arithmetic(DIGITS), DECIDING_STATES)
+    exact = singly(machine, samples, mpmath_arithmetic(DIGITS), DECIDING_STATES)
     error = max(over(exact, lambda at, _: imbalance(terms, at)))
     if error > EXACT_TOLERANCE:
         raise CheckError(
@@ -46,11 +46,11 @@ def balance(machine: Machine, samples: Samples) -> float:
     return error
 
 
-def imbalance(terms: Sequence[Node], at: Bench) -> float:
+def imbalance(terms: Sequence[Node], at: Bench) -> Any:
     """|sum of the terms| / sum of |terms|, 0 where all vanish."""
     values = at.nodes(terms)
     scale = sum(abs(v) for v in values)
-    return float(abs(sum(values)) / scale) if scale else 0.0
+    return abs(sum(values)) / (scale + (scale == 0))
 
 
 def balance_terms(machine: Machine) -> list[Node]:

@@ -25,7 +25,8 @@ from eomgen.render.arrange_sums import (
 from eomgen.render.arrange_terms import Factors, Term, flat
 from eomgen.render.tree import Symbol, Tree
 
-INERTIA: tuple[Strategy, ...] = (collected,)
+INERTIA: tuple[Strategy, ...] = (collected, by_power)
+WORK: tuple[Strategy, ...] = (collected,)
 LOADS: tuple[Strategy, ...] = (collected, by_power, by_parameter)
 KINETIC: tuple[Strategy, ...] = (collected, by_whole_power, by_content)
 POTENTIAL: tuple[Strategy, ...] = (collected, by_power, by_weight, by_parameter)
@@ -116,4 +117,4 @@ def loads(arranger: Arranger, form: Form) -> Tree:
 
 def work(arranger: Arranger, form: Form) -> Tree:
     """Virtual work: one bracket for each virtual displacement, as declared."""
-    return _shortest(arranger, form, INERTIA)
+    return _shortest(arranger, form, WORK)

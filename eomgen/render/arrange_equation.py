@@ -14,7 +14,7 @@ from eomgen.mechanics.equations import Equation
 from eomgen.render import tree
 from eomgen.render.arrange import LOADS, Arranger, degree, sections
 from eomgen.render.arrange_order import Kind
-from eomgen.render.arrange_pieces import Piece, common, shown, summed, without
+from eomgen.render.arrange_pieces import Piece, common, ordered, shown, summed, without
 from eomgen.render.arrange_sums import shortest
 from eomgen.render.arrange_terms import Factors, Term, flat
 from eomgen.render.tree import Symbol, Tree
@@ -62,7 +62,7 @@ def _left(factors: Factors, parts: Parts, own: str | None) -> list[Piece]:
     """Pieces of the left side, the equation's own acceleration first."""
     pieces = [p for part in sections(factors, parts["inertia"], own) for p in part]
     for name in LOADED:
-        pieces += sorted(shortest(factors, parts[name], LOADS), key=lambda p: p.rank)
+        pieces += ordered(shortest(factors, parts[name], LOADS))
     return pieces
 
 

@@ -77,10 +77,14 @@ def _with_tangents(factors: Factors, powers: Powers) -> Powers:
 
 def summed(factors: Factors, pieces: Sequence[Piece]) -> Tree:
     """Pieces as a sum in which a positive term leads, if there is one."""
-    ordered = sorted(pieces, key=lambda p: p.rank)
-    first = next((i for i, p in enumerate(ordered) if p.number > 0), 0)
-    ordered.insert(0, ordered.pop(first)) if ordered else None
-    return tree.total(tuple(shown(factors, p) for p in ordered))
+    return tree.total(tuple(shown(factors, p) for p in ordered(pieces)))
+
+
+def ordered(pieces: Sequence[Piece]) -> list[Piece]:
+    """Pieces by rank, the first positive one in front."""
+    ranked = sorted(pieces, key=lambda p: p.rank)
+    first = next((i for i, p in enumerate(ranked) if p.number > 0), 0)
+    return ranked[first : first + 1] + ranked[:first] + ranked[first + 1 :]
 
 
 def rank(factors: Factors, term: Term) -> tuple[object, ...]:
@@ -88,23 +92,29 @@ def rank(factors: Factors, term: Term) -> tuple[object, ...]:
 
     Among positions s - l_0 and J + m l^2 cos q: symbols, then constants, then functions.
     """
-    ranks = [(factors.ranks[f], -e) for f, e in term.motion]
+    known = factors.keys.get(term.motion)
+    if known is None:
+        known = factors.keys[term.motion] = _rank_of_motion(factors, term.motion)
+    return (known, tuple((factors.ranks[f], -e) for f, e in term.parameters))
+
+
+def _rank_of_motion(factors: Factors, motion: Powers) -> tuple[object, ...]:
+    ranks = [(factors.ranks[f], -e) for f, e in motion]
     by_kind: dict[Kind, list[tuple[Rank, int]]] = {}
     for item in ranks:
         by_kind.setdefault(item[0][0], []).append(item)
     rates = by_kind.get(Kind.RATE, [])
-    degree = sum(-e for _, e in rates)
     return (
         by_kind.get(Kind.VIRTUAL, []),
         Kind.INPUT not in by_kind,
         Kind.ACCELERATION not in by_kind,
         by_kind.get(Kind.ACCELERATION, []),
-        -degree,
+        sum(e for _, e in rates),
         len(rates),
         rates,
-        standing(factors, term.motion),
+        standing(factors, motion),
+        -sum(e for _, e in by_kind.get(Kind.COORDINATE, [])),
         ranks,
-        [(factors.ranks[f], -e) for f, e in term.parameters],
     )
 
 
@@ -117,11 +127,12 @@ def standing(factors: Factors, motion: Powers) -> int:
 
 def oriented(factors: Factors, pieces: Sequence[Piece]) -> tuple[int, list[Piece]]:
     """(sign, pieces * sign): -k (s - l_0), not k (l_0 - s), yet c (x_2' - x_1')."""
-    foremost = min(standing(factors, p.motion) for p in pieces)
-    leading = [p.number < 0 for p in pieces if standing(factors, p.motion) == foremost]
-    if 2 * sum(leading) > len(leading):
-        return -1, [negated(p) for p in pieces]
-    return 1, list(pieces)
+    ranked = sorted(pieces, key=lambda p: p.rank)
+    foremost = min(standing(factors, p.motion) for p in ranked)
+    negative = [p.number < 0 for p in ranked if standing(factors, p.motion) == foremost]
+    if negative[0] and (len(negative) != 2 or all(negative)):
+        return -1, [negated(p) for p in ranked]
+    return 1, ranked
 
 
 def content(numbers: Iterable[Fraction], moving: bool = False) -> Fraction:

@@ -1,8 +1,8 @@
-"""Perfect powers in a sum: 1/2 k (s - l_0)^2, 1/2 I_3 (psi' + phi' cos theta)^2."""
+"""Factors of a sum: 1/2 k (s - l_0)^2, I_3 (psi' + phi' cos theta)^2, k (x - y) (1 - l_0 / r)."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -12,17 +12,17 @@ from sympy.polys.rings import ring
 from eomgen.render import tree
 from eomgen.render.arrange_order import Kind
 from eomgen.render.arrange_pieces import Piece, common, negated, rank, summed, without
-from eomgen.render.arrange_sums import collected
-from eomgen.render.arrange_terms import Factors, Term, flat
+from eomgen.render.arrange_sums import LEADS, collected
+from eomgen.render.arrange_terms import Factors, Powers, Term, flat
 
-MOST = 16  # terms of a sum that is tried
+MOST = 20  # terms of a sum that is tried
 
 
 def by_power(factors: Factors, terms: Sequence[Term]) -> list[Piece]:
-    """Groups that share a parameter and are a power, as pieces; nothing if there is none."""
+    """Groups that share a parameter and have factors, as pieces; nothing if there is none."""
     left, pieces = list(terms), []
     for group in _groups(factors, terms):
-        if all(t in left for t in group) and (piece := _as_power(factors, group)):
+        if all(t in left for t in group) and (piece := _factored(factors, group)):
             pieces.append(piece)
             left = [t for t in left if t not in group]
     return pieces + collected(factors, left) if pieces else []
@@ -35,38 +35,61 @@ def by_whole_power(factors: Factors, terms: Sequence[Term]) -> list[Piece]:
     return pieces if not crossing else []
 
 
-def _groups(factors: Factors, terms: Sequence[Term]) -> list[list[Term]]:
-    """Terms that share a parameter, as declared; at last all of them."""
+def _groups(factors: Factors, terms: Sequence[Term]) -> Iterator[list[Term]]:
+    """Terms that share a parameter, as declared, whole and in unconnected parts; then all."""
     groups: dict[int, list[Term]] = {}
     for term in terms:
         for factor, exponent in term.parameters:
             if exponent > 0:
                 groups.setdefault(factor, []).append(term)
     declared = [groups[f] for f in sorted(groups, key=lambda f: factors.place((f, 1)))]
-    return [g for g in (*declared, list(terms)) if 3 <= len(g) <= MOST]
+    for group in (*declared, list(terms)):
+        for part in (group, *_parts(factors, group)):
+            if 3 <= len(part) <= MOST:
+                yield part
 
 
-def _as_power(factors: Factors, terms: list[Term]) -> Piece | None:
-    """number * parameters * motion * sum^n with n > 1, if the terms are that."""
+def _parts(factors: Factors, terms: list[Term]) -> list[list[Term]]:
+    """The terms split where no part moves with another; nothing if they hang together."""
+    shared = common([t.motion for t in terms])
+    parts: list[tuple[set[int], list[Term]]] = []
+    for term in terms:
+        moving = {f for f, _ in without(factors, term.motion, shared)}
+        joined = [p for p in parts if p[0] & moving]
+        parts = [p for p in parts if not p[0] & moving]
+        members = [t for _, held in joined for t in held]
+        parts.append((moving.union(*(names for names, _ in joined)), [*members, term]))
+    return [held for _, held in parts] if len(parts) > 1 else []
+
+
+def _factored(factors: Factors, terms: list[Term]) -> Piece | None:
+    """number * parameters * motion * sums, if the terms are a power or a product of sums."""
     parameters, motion = common([t.parameters for t in terms]), common([t.motion for t in terms])
     rest = _with_roots(factors, [
         Term(t.number, without(factors, t.parameters, parameters),
              without(factors, t.motion, motion))
         for t in terms
     ])  # fmt: skip
-    if len(rest) < 3 or sum(_is_square(t) for t in rest) < 2:
+    if len(rest) < 3 or not (_has_quotient(rest) or sum(_is_square(t) for t in rest) > 1):
         return None
-    found = _root(factors, rest)
+    found = _sums(factors, rest)
     if found is None:
         return None
-    number, base, exponent = found
+    number, sums = found
+    lead = any(factors.kind(f) in LEADS for f in motion)
     return Piece(
         number,
         factors.sort(parameters.items()),
         factors.sort(motion.items()),
-        last=(tree.Power(base, exponent),),
+        inner=sums if lead else (),
+        last=() if lead else sums,
         rank=min(rank(factors, t) for t in terms),
     )
+
+
+def _has_quotient(terms: list[Term]) -> bool:
+    """Whether something is divided by, in four terms or more."""
+    return len(terms) > 3 and any(e < 0 for t in terms for _, e in t.motion)
 
 
 def _is_square(term: Term) -> bool:
@@ -91,38 +114,67 @@ def _with_roots(factors: Factors, terms: list[Term]) -> list[Term]:
     return terms
 
 
-def _root(factors: Factors, terms: list[Term]) -> tuple[Fraction, tree.Tree, int] | None:
-    """(number, base, n) with terms = number * base^n, n > 1."""
-    powers = [t.parameters + t.motion for t in terms]
-    if any(e < 0 for p in powers for _, e in p):
+def _sums(factors: Factors, terms: list[Term]) -> tuple[Fraction, tuple[tree.Tree, ...]] | None:
+    """(number, sums) whose product the terms are; two sums or a power of one."""
+    names, signs, polynomial = _polynomial(terms)
+    if not polynomial:
         return None
-    names = list(dict.fromkeys(f for p in powers for f, _ in p))
-    dense = [tuple(dict(p).get(f, 0) for f in names) for p in powers]
+    content, found = polynomial.factor_list()
+    if sum(exponent for _, exponent in found) < 2 or any(len(base) < 2 for base, _ in found):
+        return None
+    bases = [(_leading(factors, _terms(factors, names, signs, b)), e) for b, e in found]
+    number = _fraction(content)
+    for (sign, _), exponent in bases:
+        number *= sign**exponent
+    if number < 0:
+        number, bases = _turned(number, bases)
+    ranked = sorted(((pieces, e) for (_, pieces), e in bases), key=lambda item: item[0][0].rank)
+    return number, tuple(tree.power(summed(factors, pieces), e) for pieces, e in ranked)
+
+
+Base = tuple[tuple[int, list[Piece]], int]  # ((sign, pieces), exponent)
+
+
+def _leading(factors: Factors, terms: list[Term]) -> tuple[int, list[Piece]]:
+    """(sign, pieces * sign) with the piece of the first rank positive."""
+    pieces = sorted(collected(factors, terms), key=lambda p: p.rank)
+    if pieces[0].number > 0:
+        return 1, pieces
+    return -1, [negated(p) for p in pieces]
+
+
+def _turned(number: Fraction, bases: list[Base]) -> tuple[Fraction, list[Base]]:
+    """k (x_2 - x_1) (...), not -k (x_1 - x_2) (...), if there is a difference to turn round."""
+    for i, ((sign, pieces), exponent) in enumerate(bases):
+        if exponent % 2 and len(pieces) == 2 and pieces[1].number < 0 and pieces[1].motion:
+            turned = ((-sign, [negated(p) for p in pieces]), exponent)
+            if not any(e < 0 for _, e in pieces[1].motion):
+                return -number, [*bases[:i], turned, *bases[i + 1 :]]
+    return number, bases
+
+
+def _polynomial(terms: list[Term]) -> tuple[list[int], list[int], Any]:
+    """(factors, signs, polynomial); a factor that is only divided by enters as its inverse."""
+    powers = [dict(t.parameters + t.motion) for t in terms]
+    names = list(dict.fromkeys(f for p in powers for f in p))
+    signs = [-1 if all(p.get(f, 0) <= 0 for p in powers) else 1 for f in names]
+    dense = [tuple(s * p.get(f, 0) for f, s in zip(names, signs, strict=True)) for p in powers]
+    if any(e < 0 for exponents in dense for e in exponents):
+        return names, signs, None
     numbers = [QQ(t.number.numerator, t.number.denominator) for t in terms]
     polynomials = ring([f"x{f}" for f in names], QQ)[0]
-    number, roots = polynomials.from_dict(dict(zip(dense, numbers, strict=True))).factor_list()
-    if len(roots) != 1 or roots[0][1] < 2:
-        return None
-    base, exponent = roots[0]
-    flipped, shown = _base(factors, _terms(factors, names, base))
-    return _fraction(number) * (-1 if flipped and exponent % 2 else 1), shown, exponent
+    return names, signs, polynomials.from_dict(dict(zip(dense, numbers, strict=True)))
 
 
-def _terms(factors: Factors, names: list[int], polynomial: Any) -> list[Term]:
-    """The terms of a polynomial whose generators are the factors `names`."""
+def _terms(factors: Factors, names: list[int], signs: list[int], polynomial: Any) -> list[Term]:
+    """The terms of a polynomial whose generators are the factors or their inverses."""
     terms = []
     for exponents, c in polynomial.terms():
-        powers = factors.sort(zip(names, exponents, strict=True))
+        signed = (s * e for s, e in zip(signs, exponents, strict=True))
+        powers: Powers = factors.sort(zip(names, signed, strict=True))
         fixed = tuple(p for p in powers if factors.kind(p[0]) <= Kind.PARAMETER)
         terms.append(Term(_fraction(c), fixed, tuple(p for p in powers if p not in fixed)))
     return terms
-
-
-def _base(factors: Factors, terms: list[Term]) -> tuple[bool, tree.Tree]:
-    """(whether the sign was changed, the sum with its first term positive)."""
-    pieces = collected(factors, terms)
-    flipped = min(pieces, key=lambda p: p.rank).number < 0
-    return flipped, summed(factors, [negated(p) for p in pieces] if flipped else pieces)
 
 
 def _fraction(number: Any) -> Fraction:

@@ -24,6 +24,8 @@ from eomgen.render.arrange_terms import Factors, Powers, Term
 LEADS = (Kind.ACCELERATION, Kind.RATE, Kind.VIRTUAL)
 WIDEST = 8  # terms of a bracket; what is longer stays in terms, so that lines can break
 
+LONGEST = 60  # terms of a sum that is arranged in more than one way
+
 Item = TypeVar("Item")
 Strategy = Callable[[Factors, Sequence[Term]], list[Piece]]
 
@@ -42,7 +44,8 @@ def shortest(
     """What the first of the strategies that show least makes of the terms."""
     if len(terms) < 2:
         return [of_term(factors, t) for t in terms]
-    found = [pieces for strategy in strategies if (pieces := strategy(factors, terms))]
+    tried = strategies if len(terms) <= LONGEST else strategies[:1]
+    found = [pieces for strategy in tried if (pieces := strategy(factors, terms))]
     return found[0] if len(found) == 1 else min(found, key=lambda p: _length(factors, p))
 
 

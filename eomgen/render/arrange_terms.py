@@ -44,6 +44,7 @@ class Factors:
     monomials: dict[Monomial, tuple[Powers, Powers, dict[Ripple, int]]] = field(
         default_factory=dict
     )
+    keys: dict[Powers, tuple[object, ...]] = field(default_factory=dict)  # sort keys of motions
     waves: set[int] = field(default_factory=set)  # sines and cosines
     squares: dict[int, Form] = field(default_factory=dict)  # factor that is a root -> its square
 

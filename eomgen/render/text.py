@@ -31,9 +31,8 @@ def name(spelling: str) -> str:
         return "δ" + name(spelling.removeprefix(VIRTUAL))
     plain = spelling.rstrip("'")
     primes = len(spelling) - len(plain)
-    letters = re.match(r"[^\W\d_]+", plain)
-    word = letters.group() if letters else ""
-    return GREEK.get(word, word) + plain[len(word) :] + PRIMES.get(primes, "′" * primes)
+    words = re.sub(r"[^\W\d_]+", lambda found: GREEK.get(found.group(), found.group()), plain)
+    return words + PRIMES.get(primes, "′" * primes)
 
 
 def text(shown: Tree) -> str:
