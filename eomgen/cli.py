@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import gc
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -157,9 +159,10 @@ def evaluate(spec: str, state: str | None, digits: int, using: str, format_: str
     if spec == state == files.STANDARD:
         raise UsageError("the spec and the state cannot both come from standard input")
     study = _study(spec, format_)
-    text = "{}" if state is None else _decoded(state)
-    found = states.read(text, study.model, needs_time=depends_on_time(study.program))
-    results = values(study.machine, study.program, found, using, digits)
+    with _reporting(format_, files.shown(spec if state is None else state)):
+        text = "{}" if state is None else _decoded(state)
+        found = states.read(text, study.model, needs_time=depends_on_time(study.program))
+        results = values(study.machine, study.program, found, using, digits)
     click.echo(json.dumps(results, indent=2, ensure_ascii=False))
 
 
@@ -167,7 +170,7 @@ def _decoded(path: str) -> str:
     try:
         return files.read(path).decode()
     except UnicodeDecodeError as error:
-        raise UsageError(f"{path}: not UTF-8 text (byte {error.start})") from error
+        raise UsageError(f"not UTF-8 text (byte {error.start})") from error
 
 
 @commands.command(epilog=_epilog("eomgen new my_system", "eomgen new crane --like furuta_pendulum"))
@@ -190,11 +193,17 @@ def examples(action: str, names: tuple[str, ...], output: Path) -> None:
     from eomgen import shelf
 
     if action == "list":
+        _takes_no_names(names)
         for stem, title in shelf.examples().items():
             click.echo(f"{stem:<28} {title}")
         return
     for path in shelf.copy_examples(names, output):
         click.echo(str(path))
+
+
+def _takes_no_names(names: tuple[str, ...]) -> None:
+    if names:
+        raise click.UsageError(f"list takes no names: {' '.join(names)}")
 
 
 @commands.command(epilog=_epilog("eomgen schema > eomgen.schema.json"))
@@ -216,6 +225,7 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
     from eomgen import shelf
 
     if action == "list":
+        _takes_no_names(names)
         for name in shelf.templates():
             click.echo(name)
         return
@@ -225,10 +235,17 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
 
 def _study(spec: str, format_: str) -> Study:
     """The study of a spec; its faults are shown as asked and end the command."""
-    try:
+    with _reporting(format_, files.shown(spec)):
         return _derived(spec)
+
+
+@contextmanager
+def _reporting(format_: str, source: str) -> Iterator[None]:
+    """Mistakes in `source` are shown as asked and end the command."""
+    try:
+        yield
     except EomgenError as error:
-        _complain(error, format_, files.shown(spec))
+        _complain(error, format_, source)
         sys.exit(error.exit_code)
 
 

@@ -14,6 +14,7 @@ from eomgen.render.templating import SUFFIX, shipped
 
 SCHEMA_FILE = "eomgen.schema.json"
 STEM = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+TITLE = re.compile(r'^system: (?:\{en: (?:"([^"]*)"|([^",}]*))|"?([^"{\n]*))', re.MULTILINE)
 
 
 def schema_text() -> str:
@@ -35,9 +36,9 @@ def examples() -> dict[str, str]:
 def _title(path: Path) -> str:
     """The English title, read from the line of the key `system` (our own files)."""
     text = path.read_text(encoding="utf-8")
-    found = re.search(r"^system:\s*(?:\{\s*en:\s*([^,}]*)|(.*)$)", text, re.MULTILINE)
+    found = TITLE.search(text)
     assert found, f"{path} has no title"
-    return (found[1] or found[2]).strip().strip("\"'")
+    return next(part for part in found.groups() if part)
 
 
 def start(name: str, like: str) -> list[Path]:
@@ -51,14 +52,17 @@ def start(name: str, like: str) -> list[Path]:
     path = Path(f"{name}.yaml")
     _must_be_new([path])
     text = _chosen([like], _specs(), "example")[like].read_text(encoding="utf-8")
-    made = {path: text}
-    if not Path(SCHEMA_FILE).exists():
-        made[Path(SCHEMA_FILE)] = schema_text()
-    return _written(made)
+    return files.put({path: text} | _schema_in(Path()))
+
+
+def _schema_in(folder: Path) -> dict[Path, str]:
+    """The schema that the first line of every example names, unless it is there."""
+    path = folder / SCHEMA_FILE
+    return {} if path.exists() else {path: schema_text()}
 
 
 def copy_examples(names: Iterable[str], folder: Path) -> list[Path]:
-    """Copy example specs into a folder; all if none is named.
+    """Copy example specs into a folder, and the schema; all if none is named.
 
     Raises:
         UsageError: there is no such example, or a file is in the way.
@@ -66,7 +70,7 @@ def copy_examples(names: Iterable[str], folder: Path) -> list[Path]:
     chosen = _chosen(names, _specs(), "example")
     made = {folder / p.name: p.read_text(encoding="utf-8") for p in chosen.values()}
     _must_be_new(made)
-    return _written(made)
+    return files.put(made | _schema_in(folder))
 
 
 def templates() -> list[str]:
@@ -85,7 +89,7 @@ def eject_templates(names: Iterable[str], folder: Path) -> list[Path]:
     chosen = _chosen(names, {name: root / name for name in templates()}, "template")
     made = {folder / name: p.read_text(encoding="utf-8") for name, p in chosen.items()}
     _must_be_new(made)
-    return _written(made)
+    return files.put(made)
 
 
 def _chosen(names: Iterable[str], known: dict[str, Path], what: str) -> dict[str, Path]:
@@ -102,13 +106,3 @@ def _must_be_new(paths: Iterable[Path]) -> None:
     there = [str(p) for p in paths if p.exists()]
     if there:
         raise UsageError(f"{', '.join(there)}: exists already and is left as it is")
-
-
-def _written(made: dict[Path, str]) -> list[Path]:
-    for path, text in made.items():
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            files.write(path, text)
-        except OSError as error:
-            raise UsageError(f"{path}: {error.strerror}") from error
-    return list(made)

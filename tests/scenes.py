@@ -3,7 +3,7 @@
 from functools import cache
 from pathlib import Path
 
-from eomgen import compile
+from eomgen import compile, study
 from eomgen.checks import samples
 from eomgen.mechanics import lagrange
 from eomgen.spec import read
@@ -41,6 +41,11 @@ def program_of(name):
 @cache
 def samples_of(name):
     return samples.draw(model_of(name), seed=7)
+
+
+@cache
+def study_of(name):
+    return study.of_model(model_of(name))
 
 
 def expecting(name, claims):

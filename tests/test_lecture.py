@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from scenes import derivation_of, expecting
+from scenes import derivation_of, expecting, study_of
 
 from eomgen.algebra import normal
 from eomgen.algebra.closed import ClosedForm
@@ -11,6 +11,7 @@ from eomgen.checks import expectations, samples
 from eomgen.compile import machine_of
 from eomgen.errors import CheckError, SpecError
 from eomgen.mechanics.quasi_velocities import PARTS
+from eomgen.outputs import Wish, rendered
 from eomgen.spec import read
 
 # the same equation may be written with a common factor: ours is the lecture's times this
@@ -198,3 +199,81 @@ def test_the_coordinates_are_a_free_set(name):
     derivation = derivation_of(name)
     assert [c.role for c in derivation.model.coordinates] == ["free", "free"]
     assert len(derivation.equations) == derivation.model.expect.dof == 2
+
+
+# --- what is printed, term for term: accelerations first, then velocity terms, springs, weights
+
+TEXT = {
+    "particle_cartesian": ("m x″ = F_x", "m y″ = F_y"),
+    "particle_polar": ("m (R″ − R θ′²) = F_R", "m (R θ″ + 2 R′ θ′) = F_θ"),
+    "slider_pendulum_free": (
+        "(m_A + m_B) s″ + m_B l φ″ cos φ − m_B l φ′² sin φ = 0",
+        "l φ″ + s″ cos φ + g sin φ = 0",
+    ),
+    "slider_spring_pendulum": (
+        "T = ½ (m_A + m_B) s′² + ½ m_B l² φ′² + m_B l s′ φ′ cos φ",
+        "V = ½ k s² − m_B g l cos φ",
+        "(m_A + m_B) s″ + m_B l φ″ cos φ − m_B l φ′² sin φ + k s = 0",
+        "l φ″ + s″ cos φ + g sin φ = 0",
+    ),
+    "disc_pendulum": (
+        "T = ½ (3/2 m_A + m_B) s′² + ½ m_B l² φ′² + m_B l s′ φ′ cos φ",
+        "V = ½ k (s − l_0)² − m_B g l cos φ",
+        "Q_s = −c s′",
+        "Q_φ = −d φ′",
+        "(3/2 m_A + m_B) s″ + m_B l φ″ cos φ − m_B l φ′² sin φ + k (s − l_0) = −c s′",
+        "l φ″ + s″ cos φ + g sin φ = −d φ′/(m_B l)",
+    ),
+}
+LATEX = {
+    "particle_cartesian": (r"m \ddot{x} = F_x", r"m \ddot{y} = F_y"),
+    "particle_polar": (
+        r"m (\ddot{R} - R \dot{\theta}^2) = F_R",
+        r"m (R \ddot{\theta} + 2 \dot{R} \dot{\theta}) = F_\theta",
+    ),
+    "slider_pendulum_free": (
+        r"x_{A} = s",
+        r"y_{A} = 0",
+        r"x_{B} = s + l \sin\varphi",
+        r"y_{B} = -l \cos\varphi",
+        r"(m_A + m_B) \ddot{s} + m_B l \ddot{\varphi} \cos\varphi"
+        r" - m_B l \dot{\varphi}^2 \sin\varphi = 0",
+        r"l \ddot{\varphi} + \ddot{s} \cos\varphi + g \sin\varphi = 0",
+    ),
+    "slider_spring_pendulum": (
+        r"L = T - V = \tfrac12 (m_A + m_B) \dot{s}^2 + \tfrac12 m_B l^2 \dot{\varphi}^2"
+        r" + m_B l \dot{s} \dot{\varphi} \cos\varphi - \tfrac12 k s^2 + m_B g l \cos\varphi",
+        r"(m_A + m_B) \ddot{s} + m_B l \ddot{\varphi} \cos\varphi"
+        r" - m_B l \dot{\varphi}^2 \sin\varphi + k s = 0",
+        r"l \ddot{\varphi} + \ddot{s} \cos\varphi + g \sin\varphi = 0",
+    ),
+    "disc_pendulum": (
+        r"L = T - V = \tfrac12 (\tfrac32 m_A + m_B) \dot{s}^2 + \tfrac12 m_B l^2 \dot{\varphi}^2"
+        r" + m_B l \dot{s} \dot{\varphi} \cos\varphi - \tfrac12 k (s - l_0)^2"
+        r" + m_B g l \cos\varphi",
+        r"Q_{s} = -c \dot{s}",
+        r"Q_{\varphi} = -c' \dot{\varphi}",
+        r"(\tfrac32 m_A + m_B) \ddot{s} + m_B l \ddot{\varphi} \cos\varphi"
+        r" - m_B l \dot{\varphi}^2 \sin\varphi + k (s - l_0) = -c \dot{s}",
+        r"l \ddot{\varphi} + \ddot{s} \cos\varphi + g \sin\varphi"
+        r" = -\frac{c' \dot{\varphi}}{m_B l}",
+    ),
+}
+
+
+def printed(name, target):
+    """The lines of a target, the columns of a line apart."""
+    wish = Wish((target,), steps=True)
+    (text,) = rendered(study_of(name), wish).values()
+    cells = text.replace("&=", "=").replace(r"\\", "").replace("\n", "&").split("&")
+    return {" ".join(cell.split()) for cell in cells}
+
+
+@pytest.mark.parametrize("name", TEXT)
+def test_the_terminal_shows_the_lectures_equations(name):
+    assert set(TEXT[name]) <= printed(name, "text")
+
+
+@pytest.mark.parametrize("name", LATEX)
+def test_the_notes_show_the_lectures_equations(name):
+    assert set(LATEX[name]) <= printed(name, "latex")

@@ -7,7 +7,6 @@ from functools import cache
 import numpy as np
 import pytest
 import sympy as sp
-from benches import bench, singly
 from scenes import (
     EXTRA,
     FILES,
@@ -26,6 +25,7 @@ from eomgen.algebra import ldl, normal
 from eomgen.algebra.arithmetic import evaluate, mpmath_arithmetic
 from eomgen.algebra.assemble import assemble
 from eomgen.checks import agreement, dimensions, expectations, power
+from eomgen.checks.evaluation import singly
 from eomgen.errors import CheckError
 from eomgen.evaluate import speeds_of
 from eomgen.interpreter import FLOAT, NUMPY
@@ -48,8 +48,9 @@ scleronomic = pytest.mark.parametrize("name", [n for n in FILES if n not in DRIV
 
 def numbers(name, nodes):
     """Values of graph nodes at the samples: (len(nodes), count)."""
-    at = bench(machine_of(name), samples_of(name))
-    return np.array([np.broadcast_to(v, at.size) for v in at.nodes(nodes)], float)
+    drawn = samples_of(name)
+    states = singly(machine_of(name), drawn, FLOAT, drawn.count)
+    return np.array([at.nodes(nodes) for at, _ in states], float).T
 
 
 def matrices(name, rows):
@@ -237,9 +238,8 @@ def test_forward_after_inverse_dynamics_is_the_identity(name):
     matrix, graph = machine.equations.mass_matrix, machine.kinematics.algebra.graph
     wanted = [graph.symbol(f"a{i}") for i in range(len(matrix))]
     (solution,), _ = ldl.solve(matrix, transform(matrix, wanted))
-    for one in singly(samples_of(name), 3):
-        at = bench(machine, one, MPMATH)
-        given = [MPMATH.number(column[0]) for column in one.accelerations]
+    for at, accelerations in singly(machine, samples_of(name), MPMATH, 3):
+        given = [MPMATH.number(a) for a in accelerations]
         leaves = at.leaves | dict(zip(wanted, given, strict=True))
         found = evaluate(solution, leaves, MPMATH)
         assert max(abs(a - b) for a, b in zip(found, given, strict=True)) < 1e-40
@@ -348,8 +348,7 @@ def differences(machine, at, nodes):
 
 def assert_derivatives(name, values, rates):
     """The second nodes are the time derivatives of the first."""
-    for one in singly(samples_of(name), 3):
-        at = bench(machine_of(name), one, MPMATH)
+    for at, _ in singly(machine_of(name), samples_of(name), MPMATH, 3):
         found, stated = differences(machine_of(name), at, values), at.nodes(rates)
         scale = 1 + max(abs(v) for v in stated)
         assert max(abs(a - b) for a, b in zip(found, stated, strict=True)) / scale < 1e-15

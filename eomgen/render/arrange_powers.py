@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from math import isqrt
 from typing import Any
 
 from sympy.polys.domains import QQ
@@ -16,6 +17,8 @@ from eomgen.render.arrange_sums import LEADS, collected
 from eomgen.render.arrange_terms import Factors, Powers, Term, flat
 
 MOST = 20  # terms of a sum that is tried
+
+Factored = tuple[Fraction, tuple[tree.Tree, ...]]  # number * sums
 
 
 def by_power(factors: Factors, terms: Sequence[Term]) -> list[Piece]:
@@ -70,9 +73,7 @@ def _factored(factors: Factors, terms: list[Term]) -> Piece | None:
              without(factors, t.motion, motion))
         for t in terms
     ])  # fmt: skip
-    if len(rest) < 3 or not (_has_quotient(rest) or sum(_is_square(t) for t in rest) > 1):
-        return None
-    found = _sums(factors, rest)
+    found = _square(factors, rest) or _sums(factors, rest)
     if found is None:
         return None
     number, sums = found
@@ -87,14 +88,62 @@ def _factored(factors: Factors, terms: list[Term]) -> Piece | None:
     )
 
 
-def _has_quotient(terms: list[Term]) -> bool:
-    """Whether something is divided by, in four terms or more."""
-    return len(terms) > 3 and any(e < 0 for t in terms for _, e in t.motion)
+def _square(factors: Factors, terms: list[Term]) -> Factored | None:
+    """The terms as number * sum^2."""
+    even = [t for t in terms if all(e % 2 == 0 for _, e in t.parameters + t.motion)]
+    return next((f for unit in even if (f := _square_with(factors, terms, unit))), None)
 
 
-def _is_square(term: Term) -> bool:
-    """A necessary mark of the corners of a power: no factor occurs to the first power."""
-    return all(abs(e) > 1 for _, e in term.parameters + term.motion)
+def _square_with(factors: Factors, terms: list[Term], unit: Term) -> Factored | None:
+    """The same with a corner given: roots of the corners, their signs from the mixed terms."""
+    numbers = {_whole(t): t.number for t in terms}
+    corners = [unit, *(t for t in terms if t != unit and _ratio(t, unit) is not None)]
+    if len(corners) < 2 or len(terms) != len(corners) * (len(corners) + 1) // 2:
+        return None
+    number, first = corners[0].number, _root(corners[0], Fraction(1))
+    roots = [first]
+    for corner in corners[1:]:
+        root = _root(corner, _ratio(corner, corners[0]) or Fraction(0))
+        mixed = numbers.get(_whole(_times(factors, first, root)))
+        sign = -1 if mixed is not None and mixed * number < 0 else 1
+        roots.append(root._replace(number=sign * root.number))
+    found: dict[object, Fraction] = {}
+    for left in roots:
+        for right in roots:
+            both = _times(factors, left, right)
+            found[_whole(both)] = found.get(_whole(both), Fraction(0)) + number * both.number
+    if found != numbers:
+        return None
+    _, pieces = _leading(factors, roots)
+    return number, (tree.Power(summed(factors, pieces), 2),)
+
+
+def _whole(term: Term) -> tuple[Powers, Powers]:
+    return term.parameters, term.motion
+
+
+def _times(factors: Factors, left: Term, right: Term) -> Term:
+    """The product of two terms."""
+    return Term(
+        left.number * right.number,
+        without(factors, left.parameters, {f: -e for f, e in right.parameters}),
+        without(factors, left.motion, {f: -e for f, e in right.motion}),
+    )
+
+
+def _ratio(term: Term, unit: Term) -> Fraction | None:
+    """The root of term.number / unit.number, if that is rational and the powers are even."""
+    ratio = term.number / unit.number
+    if ratio < 0 or any(e % 2 for _, e in term.parameters + term.motion):
+        return None
+    above, below = isqrt(ratio.numerator), isqrt(ratio.denominator)
+    return Fraction(above, below) if Fraction(above, below) ** 2 == ratio else None
+
+
+def _root(term: Term, number: Fraction) -> Term:
+    """number * the root of the powers."""
+    halves = (tuple((f, e // 2) for f, e in p) for p in (term.parameters, term.motion))
+    return Term(number, *halves)
 
 
 def _with_roots(factors: Factors, terms: list[Term]) -> list[Term]:
@@ -114,8 +163,10 @@ def _with_roots(factors: Factors, terms: list[Term]) -> list[Term]:
     return terms
 
 
-def _sums(factors: Factors, terms: list[Term]) -> tuple[Fraction, tuple[tree.Tree, ...]] | None:
-    """(number, sums) whose product the terms are; two sums or a power of one."""
+def _sums(factors: Factors, terms: list[Term]) -> Factored | None:
+    """(number, sums) whose product the terms are; two sums or a higher power of one."""
+    if not (_has_quotient(terms) or sum(_is_cube(t) for t in terms) > 1):
+        return None
     names, signs, polynomial = _polynomial(terms)
     if not polynomial:
         return None
@@ -130,6 +181,16 @@ def _sums(factors: Factors, terms: list[Term]) -> tuple[Fraction, tuple[tree.Tre
         number, bases = _turned(number, bases)
     ranked = sorted(((pieces, e) for (_, pieces), e in bases), key=lambda item: item[0][0].rank)
     return number, tuple(tree.power(summed(factors, pieces), e) for pieces, e in ranked)
+
+
+def _has_quotient(terms: list[Term]) -> bool:
+    """Whether something is divided by, in four terms or more."""
+    return len(terms) > 3 and any(e < 0 for t in terms for _, e in t.motion)
+
+
+def _is_cube(term: Term) -> bool:
+    """A mark of the corners of a higher power: no factor below the third power."""
+    return all(abs(e) > 2 for _, e in term.parameters + term.motion)
 
 
 Base = tuple[tuple[int, list[Piece]], int]  # ((sign, pieces), exponent)

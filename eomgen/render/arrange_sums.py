@@ -144,14 +144,17 @@ def _cofactors(powers: Powers) -> list[Powers]:
 
 
 def _coefficient(piece: Piece) -> Hashable:
-    """Pieces with an equal key may share their coefficient."""
-    return (piece.parameters, piece.coefficient) if not piece.inner + piece.last else id(piece)
+    """Pieces with an equal key may share their coefficient and their denominator."""
+    if piece.inner + piece.last:
+        return id(piece)
+    return piece.parameters, piece.coefficient, tuple(p for p in piece.motion if p[1] < 0)
 
 
 def _shared(factors: Factors, pieces: list[Piece]) -> list[Piece]:
-    """Pieces with one coefficient: c (x1' - x2'); plain numbers are not taken out."""
+    """Pieces with one coefficient: c (x1' - x2'), (x x' + y y') / r; numbers alone stay."""
     first = pieces[0]
-    if len(pieces) == 1 or not (first.parameters or first.coefficient):
+    divided = any(e < 0 for _, e in first.motion)
+    if len(pieces) == 1 or not (first.parameters or first.coefficient or divided):
         return pieces
     if any(not p.motion for p in pieces):
         return pieces

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from itertools import product
 from math import comb, lcm
 
@@ -32,7 +32,21 @@ def shortest(waves: Waves, below: Mapping[Ripple, int], phases: frozenset[int]) 
     if len(waves) == 1 and not below:
         ((ripple, c),) = waves.items()
         return _single(ripple, c)
-    spellings = [_divided(s, below) for s in _candidates(waves, below, phases)]
+    ordered = sorted(waves)
+    scale = waves[ordered[0]]
+    unit = tuple((ripple, waves[ripple] / scale) for ripple in ordered)
+    found = _shortest(unit, tuple(sorted(below.items())), phases)
+    return {powers: c * scale for powers, c in found.items()}
+
+
+@lru_cache(maxsize=4096)
+def _shortest(
+    waves: tuple[tuple[Ripple, Fraction], ...],
+    below: tuple[tuple[Ripple, int], ...],
+    phases: frozenset[int],
+) -> Spelling:
+    """The same for waves in order, the first with the coefficient 1: they come again and again."""
+    spellings = [_divided(s, dict(below)) for s in _candidates(dict(waves), dict(below), phases)]
     return min(spellings, key=_measure)
 
 

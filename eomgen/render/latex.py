@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from fractions import Fraction
 
+from eomgen.mechanics.equations import virtual_name
 from eomgen.render.latex_names import spelled
 from eomgen.render.tree import Function, Number, Power, Product, Sum, Symbol, Tree, split_sign
 
@@ -20,6 +21,7 @@ SPELLED = RAISED | {
     "atan2": r"\operatorname{atan2}", "sign": r"\operatorname{sgn}", "min": r"\min",
     "max": r"\max",
 }  # fmt: skip
+VIRTUAL = virtual_name("")
 TALL = re.compile(r"\\(?:frac|sqrt|left)")
 
 
@@ -88,10 +90,16 @@ def _side_by_side(coefficient: Fraction, factors: tuple[Tree, ...], names: Names
         return latex(factors[0], names)
     spelled_out = [] if coefficient == 1 and factors else [number(coefficient)]
     for i, factor in enumerate(factors):
-        before = isinstance(factors[i - 1], Function) if i else False
-        gap = r"\," if before and isinstance(factor, Sum | Symbol) else ""
+        gap = r"\," if spelled_out and _stands_off(factor, factors[i - 1 : i]) else ""
         spelled_out.append(gap + _positive(factor, names))
     return " ".join(spelled_out)
+
+
+def _stands_off(factor: Tree, before: tuple[Tree, ...]) -> bool:
+    """Whether a thin space keeps the factor apart: delta s, what follows a cosine."""
+    if isinstance(factor, Symbol) and factor.name.startswith(VIRTUAL):
+        return True
+    return isinstance(factor, Sum | Symbol) and any(isinstance(b, Function) for b in before)
 
 
 def _power(shown: Power, names: Names) -> str:

@@ -9,46 +9,13 @@ from eomgen.model import Model
 from eomgen.render import latex_names, layout
 from eomgen.render.latex import bracketed, latex
 from eomgen.render.latex_text import escaped, unit
+from eomgen.render.latex_width import width
 from eomgen.render.style import Rows, Style
 
-LINE = 88.0  # printed characters of a line, its left side included
-WIDEST = 78.0  # of a matrix
-
-WRAPPED = re.compile(r"\\(?:d?dot|mathrm|mathbf|bar|hat|vec|tilde|text|boldsymbol)\{([^{}]*)\}")
-SCRIPT = re.compile(r"[_^](?:\{([^{}]*)\}|(\\[A-Za-z]+|.))")
-FRACTION = re.compile(r"\\[td]?frac(?:\{([^{}]*)\}\{([^{}]*)\}|(\d)(\d))")
-ROOT = re.compile(r"\\sqrt\{([^{}]*)\}")
+LINE = 80.0  # figures of a line, its left side included
+NUMBER = 5.0  # figures that the number of an equation takes
+GAP = 4.0  # figures between two columns of equations
 BLANK = r"\,"
-MACRO = re.compile(r"\\(?:left|right|quad|,)")
-
-
-def width(formula: str) -> float:
-    """About how many characters wide the formula is printed."""
-    scripts = 0.0
-    previous = ""
-    while previous != formula:
-        previous = formula
-        formula = WRAPPED.sub(r"\1", formula)
-        formula = FRACTION.sub(_wider, formula)
-        formula = ROOT.sub(r"x\1", formula)
-        found = SCRIPT.search(formula)
-        if found and not set(found.group(1) or "") & {"\\"}:
-            scripts += 0.65 * _characters(found.group(1) or found.group(2))
-            formula = formula[: found.start()] + formula[found.end() :]
-    return scripts + _characters(formula)
-
-
-def _wider(found: re.Match[str]) -> str:
-    return max((g for g in found.groups() if g is not None), key=_characters)
-
-
-def _characters(text: str) -> float:
-    """Letters and figures, wide signs with their gaps; blanks are not printed."""
-    plain = MACRO.sub("", text)
-    plain = re.sub(r"\\(sin|cos|tan|ln|min|max|sgn|arc\w+)", "fun", plain)
-    plain = re.sub(r"\\[A-Za-z]+", "x", plain)
-    signs = sum(plain.count(sign) for sign in (" + ", " - ", "="))
-    return len(re.sub(r"[\s{}&\\]", "", plain)) + 1.2 * signs
 
 
 def style(model: Model) -> Style:
@@ -67,9 +34,10 @@ def style(model: Model) -> Style:
         partial=lambda what, by: rf"\frac{{\partial {what}}}{{\partial {by}}}",
         rate=lambda what: rf"\frac{{d}}{{dt}} {bracketed(what)}",
         display=display,
+        pairs=pairs,
         equation=equation,
         matrix=matrix,
-        fits=lambda rows: matrix_width(rows) <= WIDEST,
+        fits=lambda rows: matrix_width(rows) <= LINE - GAP,
         remark=lambda text: rf"\text{{{escaped(text)}}}",
     )
 
@@ -92,17 +60,27 @@ def _index(name: str) -> str:
 def display(rows: Rows) -> str:
     """Rows for align*, a formula longer than a line going on below."""
     spelled = []
+    indent = max((width(left) for left, _ in rows), default=0.0) + 2.5
     for left, right in rows:
-        indent = width(left)
         first, *rest = layout.lines(right, LINE - indent, width)
         spelled.append(f"{left} &= {first}")
         spelled += [rf"&\quad {line}" for line in rest]
     return " \\\\\n".join(spelled)
 
 
+def pairs(rows: Sequence[Rows]) -> str:
+    """Rows of one or two equations, beside each other where all of them fit."""
+    columns = [[row[i] for row in rows if len(row) > i] for i in (0, 1)]
+    wide = [max((width(e[side]) for e in c), default=0.0) for c in columns for side in (0, 1)]
+    if sum(wide) + 5.0 + GAP > LINE:
+        return display([equation for row in rows for equation in row])
+    beside = (" & ".join(f"{left} &= {right}" for left, right in row) for row in rows)
+    return " \\\\\n".join(beside)
+
+
 def equation(left: str, right: str) -> str:
     """Rows of one numbered equation: left = right, broken in its left side."""
-    first, *rest = layout.lines(f"{left} = {right}", LINE, width)
+    first, *rest = layout.lines(f"{left} = {right}", LINE - NUMBER, width)
     spelled = [f"& {first}", *(rf"&\quad {line}" for line in rest)]
     return " \\notag \\\\\n".join(spelled)
 

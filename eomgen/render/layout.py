@@ -33,23 +33,29 @@ def breaks(formula: str) -> Iterator[tuple[int, int]]:
 
 def lines(formula: str, limit: float, width: Width) -> list[str]:
     """The formula in lines of at most `limit`, as far as its signs allow."""
-    result = []
-    while width(formula) > limit:
-        at = _best(formula, limit, width)
-        if at is None:
+    if width(formula) <= limit:
+        return [formula]
+    places = [*breaks(formula), (len(formula), 0)]
+    starts = [0, *(at + 1 for at, _ in places)]
+    widths = [width(formula[a : at + 1]) for a, (at, _) in zip(starts, places, strict=False)]
+    result, start = [], 0
+    while start < len(places):
+        end = _end(widths, [depth for _, depth in places], start, limit)
+        result.append(formula[starts[start] : places[end - 1][0]])
+        start = end
+    return result
+
+
+def _end(widths: list[float], depths: list[int], start: int, limit: float) -> int:
+    """How far a line goes: to the last outer break that fills half of it, else to the last."""
+    if sum(widths[start:]) <= limit:
+        return len(widths)
+    ends, total = [], 0.0
+    for i in range(start, len(widths)):
+        total += widths[i]
+        if total > limit and ends:
             break
-        result.append(formula[:at])
-        formula = formula[at + 1 :]
-    return [*result, formula]
-
-
-def _best(formula: str, limit: float, width: Width) -> int | None:
-    """The last break that fits, an outer one if it fills half of the line; else the first."""
-    places = list(breaks(formula))
-    fitting = [(i, depth) for i, depth in places if width(formula[:i]) <= limit]
-    good = [(i, depth) for i, depth in fitting if width(formula[:i]) >= limit / 2]
-    for candidates in (good, fitting):
-        if candidates:
-            outer = min(depth for _, depth in candidates)
-            return max(i for i, depth in candidates if depth == outer)
-    return places[0][0] if places else None
+        ends.append((i + 1, total))
+    good = [end for end, filled in ends if filled >= limit / 2] or [end for end, _ in ends]
+    outer = min(depths[end - 1] for end in good)
+    return max(end for end in good if depths[end - 1] == outer)

@@ -90,17 +90,20 @@ def _by_coordinate(page: Page) -> Iterator[tuple[Coordinate, LagrangeRow]]:
 
 def _places(page: Page) -> dict[str, object]:
     """Positions, velocities of what moves, angular velocities."""
-    style, rows = page.style, []
+    style = page.style
     axes = AXES[: SPACES[page.derivation.model.space]]
+    rows = []
     for place in page.derivation.places:
         moves = any(v.terms for v in place.velocity)
         for axis, at, speed in zip(axes, place.position, place.velocity, strict=True):
             name = style.index(axis, place.name)
-            rows.append((name, formula(page, arrange.motion, at)))
+            row = [(name, formula(page, arrange.motion, at))]
             if moves:
-                rows.append((style.dotted(name), formula(page, arrange.motion, speed)))
+                row.append((style.dotted(name), formula(page, arrange.motion, speed)))
+            rows.append(row)
     return {
-        "places": style.display(rows) if rows else "",
+        "places": style.pairs(rows) if rows else "",
+        "spins_said": page.words["spins_body" if len(axes) > 2 else "spins"],
         "spins": style.display(list(_spins(page))) if page.derivation.spins else "",
     }
 

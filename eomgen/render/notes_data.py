@@ -24,13 +24,10 @@ LONGEST = 12  # figures of a decimal number that is written out
 def parameter(page: Page, given: Parameter) -> Row:
     """Symbol, meaning, and the value in SI or the formula."""
     row = _row(page, given.symbol.name, given.description)
-    if given.formula is not None:
-        value = closed(page, given.formula)
-    elif given.value is None:
-        value = ""
-    else:
-        value = number(page, given.value)
-    return {**row, "unit": page.style.unit(si_unit(given.description)), "value": value}
+    if given.value is None:
+        return {**row, "unit": "", "value": closed(page, given.formula) if given.formula else ""}
+    unit = page.style.unit(si_unit(given.description))
+    return {**row, "unit": unit, "value": number(page, given.value)}
 
 
 def coordinate(page: Page, given: Coordinate | Input) -> Row:

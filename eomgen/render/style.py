@@ -26,6 +26,7 @@ class Style:
     partial: Callable[[str, str], str]  # dL/ds
     rate: Callable[[str], str]  # d/dt (...)
     display: Callable[[Rows], str]  # equations below each other, long ones broken
+    pairs: Callable[[Sequence[Rows]], str]  # equations beside each other
     equation: Callable[[str, str], str]  # left = right, broken anywhere
     matrix: Callable[[Sequence[Sequence[str]]], str]
     fits: Callable[[Sequence[Sequence[str]]], bool]  # whether a matrix goes on a line

@@ -75,12 +75,14 @@ def _product(shown: Product) -> str:
     if not shown.divisors:
         return above
     below = " ".join(_factor(d) for d in shown.divisors)
-    single = len(shown.divisors) == 1 and " " not in below
-    return (
-        f"{above}/{below}"
-        if single or below.startswith("(") and len(shown.divisors) == 1
-        else f"{above}/({below})"
-    )
+    return f"{above}/({below})" if " " in _outside(below) else f"{above}/{below}"
+
+
+def _outside(shown: str) -> str:
+    """The text without what stands in brackets."""
+    while (shorter := re.sub(r"\([^()]*\)", "", shown)) != shown:
+        shown = shorter
+    return shown
 
 
 def _factor(shown: Tree) -> str:
@@ -89,16 +91,14 @@ def _factor(shown: Tree) -> str:
 
 
 def _power(shown: Power) -> str:
+    """cos² φ, (s − l_0)²; a function that takes no exponent stands in brackets."""
     exponent = str(shown.exponent).translate(SUPERSCRIPTS)
-    if isinstance(shown.base, Function):
-        if shown.base.name in RAISED:
-            return _function(shown.base, exponent)
-        return (
-            f"({text(shown.base)}){exponent}"
-            if shown.base.name != "sqrt"
-            else f"{text(shown.base)}{exponent}"
-        )
-    return _factor(shown.base) + exponent
+    base = shown.base
+    if isinstance(base, Function) and base.name in RAISED:
+        return _function(base, exponent)
+    bare = isinstance(base, Function) and base.name in ("sqrt", "abs")
+    inside = f"({text(base)})" if isinstance(base, Function) and not bare else _factor(base)
+    return inside + exponent
 
 
 def _function(shown: Function, exponent: str) -> str:

@@ -38,6 +38,7 @@ def style() -> Style:
         partial=lambda what, by: f"∂{what}/∂{by}",
         rate=lambda what: f"d/dt({what})",
         display=display,
+        pairs=lambda rows: display([equation for row in rows for equation in row]),
         equation=equation,
         matrix=matrix,
         fits=lambda rows: matrix_width(rows) <= LINE,

@@ -1,0 +1,56 @@
+"""What the functions of a shipped spec are worth at random arguments, in 50 digits."""
+
+from functools import cache
+
+import mpmath
+import numpy as np
+from scenes import SHIPPED, model_of, program_of
+
+from eomgen import interpreter
+from eomgen.checks import samples
+
+NAMES = tuple(SHIPPED)
+STATES = 5
+DIGITS = 50
+ARGUMENTS = ("time", "state", "inputs", "parameters")
+
+
+@cache
+def arguments(name):
+    """(STATES, n) arrays by the names of ARGUMENTS, of numbers that single precision holds too."""
+    drawn = samples.draw(model_of(name), STATES, seed=11).arguments()
+    return {
+        argument: np.array(drawn[argument], dtype=np.float32)
+        .reshape(-1, STATES)
+        .T.astype(np.float64)
+        for argument in ARGUMENTS
+    }
+
+
+@cache
+def exact(name):
+    """Function -> for each state its results, row by row."""
+    arithmetic = interpreter.mpmath_arithmetic(DIGITS)
+    given = arguments(name)
+
+    def results(function, number):
+        numbers = {a: [mpmath.mpf(float(v)) for v in given[a][number]] for a in ARGUMENTS}
+        return interpreter.run(function, numbers, arithmetic)
+
+    return {f.name: [results(f, n) for n in range(STATES)] for f in program_of(name).functions}
+
+
+def worst_error(name, function, found):
+    """The worst error at any state, relative to the largest result there."""
+    worst = 0.0
+    for wanted, got in zip(exact(name)[function], found, strict=True):
+        size = max(map(abs, wanted), default=0) or 1
+        worst = max([worst, *(float(abs(w - g) / size) for w, g in zip(wanted, got, strict=True))])
+    return worst
+
+
+def condition(name):
+    """The worst condition number of the mass matrix at the random states."""
+    count = len(program_of(name).speeds)
+    matrices = np.array(exact(name)["mass_matrix"], dtype=float).reshape(-1, count, count)
+    return float(np.linalg.cond(matrices).max())
