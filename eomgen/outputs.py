@@ -65,7 +65,7 @@ WORDS = {
         "digits": " (in {digits} digits)",
         "power": "power balance below {error}",
         "terms": "dimensions of {terms} terms",
-        "claims": "{claims} claims of the author",
+        "claims": "claims of the author: {claims}",
     },
     "es": {
         "checked": "comprobado",
@@ -76,7 +76,7 @@ WORDS = {
         "digits": " (con {digits} dígitos)",
         "power": "balance de potencia menor que {error}",
         "terms": "dimensiones de {terms} términos",
-        "claims": "{claims} afirmaciones del autor",
+        "claims": "afirmaciones del autor: {claims}",
     },
 }
 

@@ -367,6 +367,12 @@ BAD = (
     Bad(
         "spring along a constant", extended("springs: [{along: l, stiffness: 1 N/m}]"), "11:19 E510"
     ),
+    Bad("quantity as a mass", changed("mass: m", "mass: 2 kg"), "10:15 E407"),
+    Bad(
+        "quantity as a stiffness",
+        changed("bodies:", "springs: [{along: phi, stiffness: 2 N}]\nbodies:"),
+        "9:35 E407",
+    ),
     Bad("two units without product", changed("mass: m", "mass: 2 m"), "10:17 E201"),
     Bad("speed over a rate", extended("speeds: {u: l^2/phi'}"), "11:13 E506"),
     Bad("product of rates", extended("speeds: {u: phi'*phi'}"), "11:13 E506"),

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from commandline import run, together
-from reference import ARGUMENTS, NAMES, STATES, arguments, condition, worst_error
+from reference import ARGUMENTS, NAMES, arguments, condition, worst_error
 from scenes import program_of
 from tools import tool
 

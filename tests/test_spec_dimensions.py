@@ -108,17 +108,17 @@ def test_one_unit_switches_the_check_on():
 @pytest.mark.parametrize(
     ("line", "allowed"),
     [
-        ("springs: [{along: phi, stiffness: 2 N*m}]", True),
-        ("springs: [{along: phi, stiffness: 2 N*m/rad, free_length: 20 deg}]", True),
-        ("springs: [{along: phi, stiffness: 2 N/m}]", False),
-        ("springs: [{along: l*phi, stiffness: 2 N/m, free_length: l}]", True),
-        ("springs: [{along: l*phi, stiffness: 2 N/m, free_length: 1}]", False),
+        ("springs: [{along: phi, stiffness: kt}]", True),
+        ("springs: [{along: phi, stiffness: kt, free_length: 20 deg}]", True),
+        ("springs: [{along: phi, stiffness: kx}]", False),
+        ("springs: [{along: l*phi, stiffness: kx, free_length: l}]", True),
+        ("springs: [{along: l*phi, stiffness: kx, free_length: 1}]", False),
         ("springs: [{along: l*phi, law: 'm*g*s/l'}]", True),
         ("springs: [{along: l*phi, law: 'm*g*s'}]", False),
         ("springs: [{along: phi, energy: 'm*g*l*s^2'}]", True),
         ("springs: [{along: phi, energy: 'm*g*s^2'}]", False),
-        ("dampers: [{along: phi, damping: 2 N*m*s}]", True),
-        ("dampers: [{along: phi, damping: 2 N*s/m}]", False),
+        ("dampers: [{along: phi, damping: ct}]", True),
+        ("dampers: [{along: phi, damping: cx}]", False),
         ("dampers: [{along: l*phi, law: 'm*v^2/l'}]", True),
         ("dampers: [{along: l*phi, law: 'm*v'}]", False),
         ("energy: {dissipation: m*l^2*phi'^2*sqrt(g/l)}", True),
@@ -141,7 +141,8 @@ def test_one_unit_switches_the_check_on():
     ],
 )
 def test_every_key_has_its_dimension(line, allowed):
-    found = codes(BASE + line + "\n")
+    constants = "kt: 2 N*m/rad, kx: 2 N/m, ct: 2 N*m*s, cx: 2 N*s/m"
+    found = codes(BASE.replace("l: 1 m", f"{constants}, l: 1 m") + line + "\n")
     assert found == [] if allowed else found in (["E403"], ["E404"])
 
 

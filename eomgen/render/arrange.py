@@ -12,7 +12,7 @@ from eomgen.algebra.normal import Form, Ring
 from eomgen.model import Model
 from eomgen.render import arrange_order, tree
 from eomgen.render.arrange_order import Kind, Order
-from eomgen.render.arrange_pieces import Piece, shown, summed
+from eomgen.render.arrange_pieces import Piece, ordered, shown, summed
 from eomgen.render.arrange_powers import by_power, by_whole_power
 from eomgen.render.arrange_sums import (
     Strategy,
@@ -86,7 +86,9 @@ def motion(arranger: Arranger, form: Form, own: str | None = None) -> Tree:
     """A position, a momentum or its rate, a slope: by accelerations, `own` first, then by rates."""
     factors = arranger.factors(form.ring)
     parts = list(sections(factors, flat(factors, form), own))
-    pieces = [p for part in parts for p in sorted(part, key=lambda p: p.rank)]
+    *moving, resting = parts
+    pieces = [p for part in moving for p in sorted(part, key=lambda p: p.rank)]
+    pieces += ordered(resting)
     if any(parts[:-2]):
         return tree.total(tuple(shown(factors, p) for p in pieces))
     return summed(factors, pieces)

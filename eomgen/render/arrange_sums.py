@@ -61,8 +61,9 @@ def collected(factors: Factors, terms: Sequence[Term]) -> list[Piece]:
 
 
 def _lead(factors: Factors, term: Term) -> Powers:
-    """The accelerations, rates and virtual displacements of a term."""
-    return tuple(p for p in term.motion if factors.kind(p[0]) in LEADS)
+    """The virtual displacement of a term, else its accelerations and rates."""
+    virtual = tuple(p for p in term.motion if factors.kind(p[0]) is Kind.VIRTUAL)
+    return virtual or tuple(p for p in term.motion if factors.kind(p[0]) in LEADS)
 
 
 def _one_lead(factors: Factors, terms: list[Term]) -> list[Piece]:

@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from eomgen.mechanics.equations import virtual_name
 from eomgen.render.latex_names import spelled
+from eomgen.render.latex_width import width
 from eomgen.render.tree import Function, Number, Power, Product, Sum, Symbol, Tree, split_sign
 
 Names = Mapping[str, str]
@@ -21,6 +22,8 @@ SPELLED = RAISED | {
     "atan2": r"\operatorname{atan2}", "sign": r"\operatorname{sgn}", "min": r"\min",
     "max": r"\max",
 }  # fmt: skip
+WIDE = 48.0  # figures of what cannot be broken: a fraction's sides, the inside of a root
+ONE = Fraction(1)
 VIRTUAL = virtual_name("")
 TALL = re.compile(r"\\(?:frac|sqrt|left)")
 
@@ -77,12 +80,28 @@ def bracketed(inside: str) -> str:
 
 
 def _product(shown: Product, names: Names) -> str:
-    """Factors side by side; a quotient as one fraction, its number inside."""
+    """Factors side by side; a quotient as one fraction, unless that is too wide for a line."""
     if not shown.divisors:
         return _side_by_side(shown.coefficient, shown.factors, names)
-    above = _side_by_side(Fraction(shown.coefficient.numerator), shown.factors, names)
-    below = _side_by_side(Fraction(shown.coefficient.denominator), shown.divisors, names)
-    return rf"\frac{{{above}}}{{{below}}}"
+    number_above, number_below = (
+        Fraction(n) for n in (shown.coefficient.numerator, shown.coefficient.denominator)
+    )
+    below = _side_by_side(number_below, shown.divisors, names)
+    if width(below) > WIDE:
+        inverses = [_inverse(d, names) for d in shown.divisors]
+        return " ".join([_side_by_side(shown.coefficient, shown.factors, names), *inverses])
+    above = _side_by_side(number_above, shown.factors, names)
+    if width(above) <= WIDE:
+        return rf"\frac{{{above}}}{{{below}}}"
+    return rf"\frac{{{number(number_above)}}}{{{below}}} {_side_by_side(ONE, shown.factors, names)}"
+
+
+def _inverse(divisor: Tree, names: Names) -> str:
+    """(...)^{-1}, which can be broken where a denominator cannot."""
+    base, exponent = (
+        (divisor.base, divisor.exponent) if isinstance(divisor, Power) else (divisor, 1)
+    )
+    return f"{bracketed(latex(base, names))}^{{-{exponent}}}"
 
 
 def _side_by_side(coefficient: Fraction, factors: tuple[Tree, ...], names: Names) -> str:
@@ -128,10 +147,14 @@ def _script(text: str) -> str:
 def _function(shown: Function, exponent: str, names: Names) -> str:
     arguments = [latex(a, names) for a in shown.arguments]
     match shown.name:
+        case "sqrt" if width(arguments[0]) > WIDE:
+            return f"{bracketed(arguments[0])}^{{1/2}}"
         case "sqrt":
             return rf"\sqrt{{{arguments[0]}}}"
         case "abs":
             return rf"\left|{arguments[0]}\right|"
+        case "exp" if width(arguments[0]) > WIDE / 3:
+            return rf"\exp{bracketed(arguments[0])}"
         case "exp":
             return f"e^{{{arguments[0]}}}"
         case "power":

@@ -15,6 +15,7 @@ from eomgen.render.style import Rows, Style
 LINE = 80.0  # figures of a line, its left side included
 NUMBER = 5.0  # figures that the number of an equation takes
 GAP = 4.0  # figures between two columns of equations
+FIXED = {"left": r"\Bigl", "right": r"\Bigr"}
 BLANK = r"\,"
 
 
@@ -62,10 +63,19 @@ def display(rows: Rows) -> str:
     spelled = []
     indent = max((width(left) for left, _ in rows), default=0.0) + 2.5
     for left, right in rows:
-        first, *rest = layout.lines(right, LINE - indent, width)
+        first, *rest = broken(right, LINE - indent)
         spelled.append(f"{left} &= {first}")
         spelled += [rf"&\quad {line}" for line in rest]
     return " \\\\\n".join(spelled)
+
+
+def broken(formula: str, limit: float) -> list[str]:
+    r"""Lines of a formula; \left( ... \right) gives way to \Bigl( ... \Bigr) where it must break."""
+    found = layout.lines(formula, limit, width)
+    if all(width(line) <= limit for line in found):
+        return found
+    loose = re.sub(r"\\(left|right)([()])", lambda m: FIXED[m[1]] + m[2], formula)
+    return layout.lines(loose, limit, width)
 
 
 def pairs(rows: Sequence[Rows]) -> str:
@@ -80,7 +90,7 @@ def pairs(rows: Sequence[Rows]) -> str:
 
 def equation(left: str, right: str) -> str:
     """Rows of one numbered equation: left = right, broken in its left side."""
-    first, *rest = layout.lines(f"{left} = {right}", LINE - NUMBER, width)
+    first, *rest = broken(f"{left} = {right}", LINE - NUMBER)
     spelled = [f"& {first}", *(rf"&\quad {line}" for line in rest)]
     return " \\notag \\\\\n".join(spelled)
 

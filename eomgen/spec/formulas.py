@@ -9,7 +9,7 @@ from eomgen.dimension import NONE
 from eomgen.model import Description
 from eomgen.spec import lower, units
 from eomgen.spec.formula import parse, parse_relation
-from eomgen.spec.ledger import Mistake
+from eomgen.spec.ledger import Mistake, shown
 from eomgen.spec.reader import Mapping, Node, Scalar, Sequence
 from eomgen.spec.scope import Known, Scene, Statement, Wanted
 from eomgen.spec.syntax import Quantity, Relation, Span, Tree, Vector, names
@@ -36,8 +36,14 @@ def _lone_quantity(node: Scalar, scene: Scene) -> Quantity | None:
     if first is None or first.group() not in units.UNITS or first.group() in scene.names:
         return None
     found = units.quantity(node)
-    if found is not None:
-        scene.units_seen = scene.units_seen or found.dimension != NONE
+    if found is not None and found.dimension != NONE:
+        # as a bare number it would lose its dimension in the derived equations
+        raise Mistake(
+            node,
+            "E407",
+            f"the quantity {shown(node.text)} stands in the place of a formula",
+            "give it a name under parameters and write the name here",
+        )
     return found
 
 
