@@ -13,7 +13,8 @@ from eomgen.algebra import ldl
 from eomgen.algebra.assemble import assemble
 from eomgen.algebra.graph import Node
 from eomgen.dimension import NONE, TIME, Dimension
-from eomgen.mechanics import energies, machine, virtual_work
+from eomgen.mechanics import constraints, energies, machine, multipliers, virtual_work
+from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.equations import Contribution, Equations
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.vectors import dot
@@ -29,6 +30,8 @@ class Machine:
     """A scene on the graph with its equations, each derived once when first asked for."""
 
     kinematics: Kinematics[Node]
+    kept: tuple[str, ...] = ()  # names of the independent rows, with a multiplier each
+    pivots: ldl.Pivots = ()  # that the rates divide by
 
     @property
     def model(self) -> Model:
@@ -52,14 +55,31 @@ class Machine:
         return sum((s.value for s in shares), self.kinematics.algebra.number(0))
 
     @cached_property
+    def rows(self) -> tuple[Row[Node], ...]:
+        """Every row of the bilateral constraints."""
+        return constraints.rows(self.kinematics)
+
+    @cached_property
+    def schur(self) -> multipliers.Schur:
+        """The Schur complement of the independent rows."""
+        return multipliers.schur(self.equations, [r for r in self.rows if r.name in self.kept])
+
+    @cached_property
+    def linked(self) -> multipliers.Solution:
+        """Accelerations and multipliers of a linked scene."""
+        return multipliers.solve(self.schur)
+
+    @cached_property
     def solution(self) -> tuple[tuple[Node, ...], ldl.Pivots]:
-        """u' = M^-1 (Q - h), unrolled up to `LARGEST_UNROLLED` equations."""
+        """u' = M^-1 (Q - h), unrolled up to `LARGEST_UNROLLED`; with multipliers of kept rows."""
+        if self.kept:
+            return self.linked.accelerations, self.linked.pivots
         matrix, bias = self.equations.mass_matrix, self.equations.bias
         right = [q - h for q, h in zip(self.equations.generalized_forces, bias, strict=True)]
         if len(right) > LARGEST_UNROLLED:
-            return tuple(ldl.solve_in_loop(matrix, right)), ()
+            return tuple(ldl.solve_in_loop(matrix, right)), self.pivots
         (solution,), pivots = ldl.solve(matrix, right)
-        return tuple(solution), pivots
+        return tuple(solution), self.pivots + pivots
 
     @cached_property
     def rates(self) -> tuple[Node, ...]:

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from spec_samples import LINKED
+
 BASE = """eom: 1
 system: Test
 space: plane
@@ -53,7 +55,22 @@ def extended(text):
     return BASE + text + "\n"
 
 
+def linked(old, new):
+    """The system with constraints of every kind, one piece replaced."""
+    assert LINKED.count(old) == 1
+    return LINKED.replace(old, new)
+
+
+def constrained(relation, options=""):
+    """The plane pendulum with one constraint: its relation begins in column 20 of line 11."""
+    return extended(f"constraints: {{c: {{{relation}{options}}}}}")
+
+
+BAD_CONSTRAINTS = (
+)
+
 BAD = (
+    *BAD_CONSTRAINTS,
     Bad("empty", "", "1:1 E107"),
     Bad("blank", "  \n\n", "1:1 E107"),
     Bad("only a comment", "# nothing\n", "1:1 E107"),
@@ -265,9 +282,6 @@ BAD = (
         "11:16 E203",
     ),
     Bad("range backwards", extended("range: {phi: [1 rad, -1 rad]}"), "11:14 E509"),
-    Bad("constraints", extended("constraints: {c: {holonomic: phi = 0}}"), "11:1 E601"),
-    Bad("linked", changed("phi: rad", "phi: {unit: rad, role: linked}"), "6:38 E603"),
-    Bad("guess", extended("initial: {phi: 1 rad, guess: {phi: 1}}"), "11:23 E604"),
     Bad("solid: angle", solid("at: P", "at: P, angle: phi"), "10:32 E507"),
     Bad("solid: axis", solid("at: P", "at: P, turn: [[w, phi]]"), "10:33 E507"),
     Bad("solid: zero axis", solid("at: P", "at: P, turn: [[[0, 0, 0], phi]]"), "10:33 E507"),

@@ -19,6 +19,7 @@ from eomgen.spec import (
     dimensions,
     loads,
     motion,
+    movers,
     names,
     places,
     roles,
@@ -79,10 +80,10 @@ def _model(whole: Mapping, root: Mapping, ledger: Ledger) -> Model:
         moments=loads.each(root.get("moments"), "moment", loads.moment, scene),
         energy=loads.energy(root.get("energy"), scene),
     )
-    reached = constraints.Places(known.points, known.bodies)
+    moving = movers.movers(known.points, known.bodies, scene)
     known = replace(
         known,
-        constraints=constraints.constraints(root.get("constraints"), reached, scene),
+        constraints=constraints.constraints(root.get("constraints"), moving, scene),
         initial=claims.initial(_table(root, "initial"), scene),
         guess=claims.guess(_table(root, "initial"), scene),
         range=claims.ranges(_table(root, "range"), scene),

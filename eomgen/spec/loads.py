@@ -128,6 +128,7 @@ def only(name: str, keys: Mapping, choices: tuple[str, ...]) -> str:
 
 
 def node_of(keys: Mapping, name: str) -> Node:
+    """The value of a key that is there."""
     found = keys.get(name)
     assert found is not None
     return found
