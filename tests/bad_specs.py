@@ -2,8 +2,6 @@
 
 from typing import NamedTuple
 
-from spec_samples import LINKED
-
 BASE = """eom: 1
 system: Test
 space: plane
@@ -55,22 +53,7 @@ def extended(text):
     return BASE + text + "\n"
 
 
-def linked(old, new):
-    """The system with constraints of every kind, one piece replaced."""
-    assert LINKED.count(old) == 1
-    return LINKED.replace(old, new)
-
-
-def constrained(relation, options=""):
-    """The plane pendulum with one constraint: its relation begins in column 20 of line 11."""
-    return extended(f"constraints: {{c: {{{relation}{options}}}}}")
-
-
-BAD_CONSTRAINTS = (
-)
-
 BAD = (
-    *BAD_CONSTRAINTS,
     Bad("empty", "", "1:1 E107"),
     Bad("blank", "  \n\n", "1:1 E107"),
     Bad("only a comment", "# nothing\n", "1:1 E107"),

@@ -65,7 +65,7 @@ def _relation(node: Scalar, kind: str) -> Relation:
 
 def _ends(relation: Relation, movers: frozenset[str], scene: Scene) -> tuple[str, str] | None:
     """The two places of `C = Cr`; None for an equation between scalars."""
-    where = lower.Lowering(scene, "coincidence")
+    where = lower.Lowering(scene, "equation of places")
     sides = (relation.left, relation.right)
     if not any(lower.is_vector(side, where) for side in sides):
         return None
@@ -74,7 +74,7 @@ def _ends(relation: Relation, movers: frozenset[str], scene: Scene) -> tuple[str
             message = f"only named places are set equal, '{side.span.text}' is none"
             hint = "name it under 'points', or write one equation for each component"
             raise Mistake(side.span, "E502", message, hint)
-        resolve(side, scene, "coincidence")
+        resolve(side, scene, "equation of places")
     first, second = (side.name for side in sides if isinstance(side, Name))
     if first == second:
         message = f"'{first}' is set equal to itself"
@@ -147,6 +147,6 @@ def _option(key: str, name: str, keys: Mapping, scene: Scene) -> sp.Expr | None:
     value = value_of(tree_of(entry.value, scene), scene)
     least, most = BOUNDS[key]
     if value is not None and ((value - least).is_negative or (value - most).is_positive):
-        bounds = f"between {least} and {most}" if most != sp.oo else "not negative"
-        raise Mistake(entry.value, "E512", f"the {key} of {name} is {bounds}, not {value}")
+        bounds = f"lie from {least} to {most}" if most != sp.oo else "not be negative"
+        raise Mistake(entry.value, "E512", f"the {key} of {name} is {value}, it must {bounds}")
     return found

@@ -85,7 +85,14 @@ def parse_relation(source: Scalar) -> Relation:
     if sign.text not in SIGNS:
         parser.expect_end()
     parser.index += 1
+    if parser.token.text == sign.text:
+        raise parser.mistake(
+            parser.token, f"'{sign.text}' stands here twice", "E205", "once will do"
+        )
     right = parser.sum(0)
+    if parser.token.text in SIGNS:
+        message = f"a second '{parser.token.text}' in one relation"
+        raise parser.mistake(parser.token, message, "E205", "write two relations")
     parser.expect_end()
     return Relation(left, sign.text, right, parser.span(0, len(source.text)))
 

@@ -56,7 +56,7 @@ def _roles(root: Mapping, has_holonomic: bool) -> Iterator[Mistake]:
     ]
     linked = [role for role in roles if role.text == "linked"]
     if not has_holonomic:
-        hint = "write 'holonomic' constraints, or leave the role out"
+        hint = "write a 'holonomic' constraint, or leave the role out"
         message = "a linked coordinate needs a holonomic constraint"
         yield from (Mistake(role, "E513", message, hint) for role in linked)
     elif roles and not linked:

@@ -49,7 +49,7 @@ USES: dict[str, frozenset[str]] = {  # what a formula describes -> what may stan
     "holonomic constraint": PLACED,
     "nonholonomic constraint": PLACED | {"coordinate'", "prescribed'", "speed"},
     "unilateral constraint": PLACED,
-    "coincidence": frozenset({"point", "body"}),
+    "equation of places": frozenset({"point", "body"}),
     "restitution": FIXED,
     "friction": FIXED,
     "output": EVERYTHING,
@@ -67,7 +67,7 @@ INSTEAD = {  # use and what stands in it -> remedy
     ("nonholonomic constraint", "input"): KNOWN_MOTION,
     ("unilateral constraint", "coordinate'"): OF_POSITIONS,
     ("unilateral constraint", "input"): KNOWN_MOTION,
-    ("coincidence", "coordinate"): "name two points or bodies, or write a scalar equation",
+    ("equation of places", "coordinate"): "name two points or bodies, or write a scalar equation",
 }
 
 
@@ -160,14 +160,17 @@ def usable(names: Mapping[str, Known], use: str) -> list[str]:
     return [n for n, known in names.items() if known.kind in USES[use]]
 
 
-UNCOUNTED = ("gravity", "dissipation", "damping", "stiffness", "kinetic energy", "time", "friction")
+UNCOUNTED = (
+    *("gravity", "dissipation", "damping", "stiffness", "kinetic energy", "time"),
+    *("restitution", "friction"),
+)
 
 
 def article(noun: str) -> str:
     """`an input`, `a force`."""
     if noun in UNCOUNTED:
         return noun
-    return f"an {noun}" if noun[0] in "aeiou" else f"a {noun}"
+    return f"an {noun}" if noun[0] in "aeio" else f"a {noun}"
 
 
 WORDS = {

@@ -81,6 +81,9 @@ def _table(node: Mapping, form: Table, ledger: Ledger, path: tuple[str, ...]) ->
     entries = []
     for entry in node.entries:
         key = form.keys.get(entry.key.text)
+        if key is None and form.keys and isinstance(entry.value, Mapping):
+            _note_unknown(entry, form.keys, ledger, path)
+            continue
         inner = key.form if key else form.of
         value = conform(entry.value, inner, ledger, (*path, entry.key.text))
         if value is not None:
@@ -95,8 +98,7 @@ def _record(
     for entry in node.entries:
         key = keys.get(entry.key.text)
         if key is None:
-            message = f"unknown key {shown(entry.key.text)}" + (f" in {path[-1]}" if path else "")
-            ledger.note(Mistake(entry.key, "E104", message, suggestion(entry.key.text, keys)))
+            _note_unknown(entry, keys, ledger, path)
             continue
         value = conform(entry.value, key.form, ledger, (*path, entry.key.text))
         if value is not None:
@@ -105,6 +107,11 @@ def _record(
     whole = all(name in {e.key.text for e in entries} for name, k in keys.items() if k.required)
     sound = len(entries) == len(node.entries)
     return Mapping(tuple(entries), node.line, node.column, sound) if whole or not path else None
+
+
+def _note_unknown(entry: Entry, keys: Map[str, Key], ledger: Ledger, path: tuple[str, ...]) -> None:
+    message = f"unknown key {shown(entry.key.text)}" + (f" in {path[-1]}" if path else "")
+    ledger.note(Mistake(entry.key, "E104", message, suggestion(entry.key.text, keys)))
 
 
 def _note_missing(
