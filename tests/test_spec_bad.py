@@ -7,7 +7,6 @@ from eomgen import spec
 from eomgen.errors import SpecError
 from eomgen.spec.report import render
 
-
 ALL = (*BAD, *BAD_CONSTRAINTS)
 
 

@@ -17,8 +17,8 @@ SAMPLES = (EVERYTHING, SLIDER_PENDULUM, TWO_LINK_ARM, BASE, LINE, SOLID, *CONSTR
 PIECES = (
     *"[]{}:,'\"-+*/^()=>&!|#%@`~ \t\n\r\0", "\n  ", "\n- ", ": ", "<<: ", "---\n", "''", "1e308",
     "1e-300", "\u03b8", "\u2028", "\ufeff", "\U0001f40d", "!!python/object:x ", "**9**9",
-    "[]", "{}", "phi'''", "der(", "<=", ">=", " = ", "phi'", "holonomic: ", "unilateral: ", "guess: ",
-     "sqrt(", "log(", "/0", "nan", "kg", "m/s", "on", "~", "null", "min(", "atan2(",
+    "[]", "{}", "phi'''", "der(", "<=", ">=", " = ", "phi'", "holonomic: ", "unilateral: ",
+    "guess: ", "sqrt(", "log(", "/0", "nan", "kg", "m/s", "on", "~", "null", "min(", "atan2(",
 )  # fmt: skip
 
 

@@ -129,8 +129,7 @@ def test_schema_refuses_a_wrong_constraint(old, new):
 
 
 def test_schema_accepts_a_list_of_constraints():
-    text = BASE + "constraints: [{holonomic: phi = 1, about: stuck}]
-"
+    text = BASE + "constraints: [{holonomic: phi = 1, about: stuck}]\n"
     assert accepts(schema(), loaded(text))
     assert not accepts(schema(), loaded(text.replace("about", "abut")))
 

@@ -6,14 +6,14 @@ The rows are linear in the rates q' whatever speeds the scene declares:  J(q, t)
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import sympy as sp
 
-from eomgen.algebra.arithmetic import Arithmetic, evaluate, mpmath_arithmetic
+from eomgen.algebra.arithmetic import Arithmetic, evaluate, mpmath_arithmetic, over
 from eomgen.algebra.graph import Node
 from eomgen.compile import Machine
 from eomgen.errors import UsageError
@@ -67,9 +67,10 @@ class Linkage:
     @cached_property
     def drifts(self) -> tuple[Node, ...]:
         """The b of J q' + b for every row: the rate at q' = 0."""
-        bindings = self.kinematics.algebra.bindings
-        still = {bindings[c.rate]: self.zero for c in self.model.coordinates}
-        return tuple(_replaced(row.rate, still) for row in self.rows)
+        algebra = self.kinematics.algebra
+        resting = {algebra.bindings[c.rate]: self.zero for c in self.model.coordinates}
+        places = {leaf: leaf for leaf in self.leaves} | resting
+        return tuple(evaluate([r.rate for r in self.rows], places, over(algebra)))
 
     @property
     def zero(self) -> Node:
@@ -81,13 +82,6 @@ class Linkage:
         """The arguments that rows may read."""
         bound = self.kinematics.algebra.bindings.values()
         return tuple(node for node in dict.fromkeys(bound) if isinstance(node.datum, Read))
-
-
-def _replaced(node: Node, values: dict[Node, Node]) -> Node:
-    """The node with other nodes in the place of some leaves, folded anew."""
-    from eomgen.algebra.arithmetic import over
-
-    return node if not values else node  # replaced below
 
 
 def of(scene: Machine) -> Linkage:
@@ -128,15 +122,19 @@ def without_speeds(model: Model) -> Model:
 
 
 def values(
-    linkage: Linkage, nodes: Iterable[Node], state: State, arithmetic: Arithmetic
+    linkage: Linkage,
+    nodes: Iterable[Node],
+    state: State,
+    arithmetic: Arithmetic,
+    more: Mapping[Node, Any] | None = None,
 ) -> list[Any]:
-    """The values of nodes at a state."""
+    """The values of nodes at a state; `more` gives those of further leaves."""
     leaves = {
         leaf: arithmetic.number(state.read(leaf.datum))
         for leaf in linkage.leaves
         if leaf.datum.argument != "inputs"
     }
-    return evaluate(nodes, leaves, arithmetic)
+    return evaluate(nodes, leaves | dict(more or {}), arithmetic)
 
 
 def matrix(
@@ -174,8 +172,8 @@ def constant(linkage: Linkage, value: Any, parameters: Sequence[Any]) -> Any:
     """A formula of parameters, or a number, in 50 digits."""
     if not isinstance(value, sp.Expr):
         return PRECISE.number(value)
-    (node,) = [linkage.kinematics.algebra.of(value)]
-    state = State(0, (0,) * 0, (), tuple(parameters))
+    node = linkage.kinematics.algebra.of(value)
+    state = State(0, (), (), tuple(parameters))
     leaves = {
         leaf: state.read(leaf.datum)
         for leaf in linkage.leaves

@@ -112,7 +112,7 @@ def _of_rates(relation: Relation, scene: Scene) -> sp.Expr:
         hint = "write 'holonomic' for a relation between coordinates"
         raise Mistake(relation.span, "E511", message, hint)
     for rate in rates:
-        if _among(found.diff(rate), 1, scene):
+        if not found.diff(rate).free_symbols.isdisjoint(rates):
             message = f"'{relation.span.text}' is not linear in {rate}"
             hint = "write it with the rates to the first power, coefficients of coordinates and t"
             raise Mistake(relation.span, "E511", message, hint)

@@ -16,7 +16,9 @@ def movers(points: tuple[Point, ...], bodies: tuple[Body, ...], scene: Scene) ->
         for needed in before:
             users.setdefault(needed, []).append(vertex)
     coordinates = {k.expressions[0] for k in scene.names.values() if k.kind == "coordinate"}
-    waiting = [vertex for vertex in users if vertex not in graph]
+    places = [n for n, k in scene.names.items() if k.kind in ("point", "body")]
+    unread = [n for n in places if ("place", n) not in graph]
+    waiting = [(part, name) for name in unread for part in ("place", "frame")]
     for vertex, formulas in _formulas(points, bodies):
         if any(formula.free_symbols & coordinates for formula in formulas):
             waiting.append(vertex)
@@ -26,9 +28,7 @@ def movers(points: tuple[Point, ...], bodies: tuple[Body, ...], scene: Scene) ->
         if vertex not in moving:
             moving.add(vertex)
             waiting += users.get(vertex, ())
-    unread = {n for n, k in scene.names.items() if k.kind in ("point", "body")}
-    unread -= {name for kind, name in graph if kind == "place"}
-    return frozenset(name for kind, name in moving if kind == "place") | unread
+    return frozenset(name for part, name in moving if part == "place")
 
 
 def _formulas(

@@ -1,0 +1,132 @@
+"""Newton's method with least-change steps: in doubles first, then polished to 50 digits.
+
+dx = -J^+ r, with the pseudo-inverse J^+ in doubles: redundant rows do no harm, and every step is
+the smallest one. The polishing steps keep J^+ in doubles and the residual r in 50 digits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from eomgen.algebra.arithmetic import FLOAT, Arithmetic
+from eomgen.analysis.linkage import IRREGULAR, PRECISE
+
+Floats = npt.NDArray[np.float64]
+Rows = tuple[list[Any], list[list[Any]]]  # residuals, Jacobian
+Problem = Callable[[Sequence[Any], Arithmetic], Rows]
+
+MOST_STEPS = 100
+MOST_POLISHING = 250  # linear convergence, where J loses rank, gains one bit a step
+CUT = 1e-11  # singular values below this share of the largest are zero
+FLOAT_TOLERANCE = 1e-10
+TOLERANCE = PRECISE.number(10) ** -44
+SHORTEST = 2.0**-20  # of the line search
+LENGTH = 1e-3  # a coordinate at zero still has a size
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Where the search ended, and what is left of every residual there."""
+
+    values: tuple[Any, ...]
+    residuals: tuple[Any, ...]
+    closed: bool
+
+
+def close(problem: Problem, start: Sequence[Any], movable: Sequence[int]) -> Outcome:
+    """The nearest zero of the residuals that Newton finds, moving only the `movable` values."""
+    rough = _descend(problem, np.array([float(v) for v in start]), list(movable))
+    if rough is None:
+        return Outcome(tuple(start), (), False)
+    values: list[Any] = [PRECISE.number(v) for v in start]
+    for i in movable:
+        values[i] = PRECISE.number(float(rough[i]))
+    try:
+        return _polish(problem, values, list(movable))
+    except IRREGULAR:
+        return Outcome(tuple(start), (), False)
+
+
+def roughly(problem: Problem, start: Sequence[Any]) -> Floats | None:
+    """A zero of the residuals in doubles, moving everything; None where none is found."""
+    try:
+        x = _descend(problem, np.array([float(v) for v in start]), list(range(len(start))))
+        return x if x is not None and _is_closed(*_floats(problem, x), x, FLOAT_TOLERANCE) else None
+    except (np.linalg.LinAlgError, *IRREGULAR):
+        return None
+
+
+def _descend(problem: Problem, x: Floats, movable: list[int]) -> Floats | None:
+    """The last point of a damped Gauss-Newton search; None where nothing is defined."""
+    try:
+        residual, slope = _floats(problem, x)
+    except IRREGULAR:
+        return None
+    for _ in range(MOST_STEPS):
+        if _is_closed(residual, slope, x, FLOAT_TOLERANCE) or not movable:
+            break
+        step = np.zeros_like(x)
+        step[movable] = -np.linalg.pinv(slope[:, movable], rcond=CUT) @ residual
+        found = _search(problem, x, step, float(np.linalg.norm(residual)))
+        if found is None:
+            break
+        x, residual, slope = found
+    return x
+
+
+def _floats(problem: Problem, x: Floats) -> tuple[Floats, Floats]:
+    residual, slope = problem([float(v) for v in x], FLOAT)
+    matrix = np.array(slope, dtype=float).reshape(len(residual), len(x))
+    if not (np.isfinite(matrix).all() and np.isfinite(residual).all()):
+        raise ValueError("not defined here")
+    return np.array(residual, dtype=float), matrix
+
+
+def _search(
+    problem: Problem, x: Floats, step: Floats, norm: float
+) -> tuple[Floats, Floats, Floats] | None:
+    """The longest of the halved steps that lowers the residual; None where none does."""
+    share = 1.0
+    while share >= SHORTEST:
+        try:
+            residual, slope = _floats(problem, x + share * step)
+        except IRREGULAR:
+            share /= 2
+            continue
+        if np.linalg.norm(residual) < norm * (1 - share / 10):
+            return x + share * step, residual, slope
+        share /= 2
+    return None
+
+
+def _is_closed(residual: Any, slope: Any, x: Any, tolerance: Any) -> bool:
+    """|r_i| <= tolerance * sum |J_ij| |x_j| for every row."""
+    sizes = [abs(v) + LENGTH for v in x]
+    return all(
+        abs(r) <= tolerance * (LENGTH**2 + sum(abs(s) * v for s, v in zip(row, sizes, strict=True)))
+        for r, row in zip(residual, slope, strict=True)
+    )
+
+
+def _polish(problem: Problem, values: list[Any], movable: list[int]) -> Outcome:
+    """The zero in 50 digits."""
+    previous = None
+    for _ in range(MOST_POLISHING):
+        residual, slope = problem(values, PRECISE)
+        size = max((abs(r) for r in residual), default=0)
+        closed = _is_closed(residual, slope, values, TOLERANCE)
+        stuck = previous is not None and size > previous * 0.9
+        if closed or not movable or stuck:
+            break
+        previous = size
+        matrix = np.array([[float(s) for s in row] for row in slope])[:, movable]
+        inverse = np.linalg.pinv(matrix, rcond=CUT)
+        for i, weights in zip(movable, inverse, strict=True):
+            shares = (PRECISE.number(float(w)) * r for w, r in zip(weights, residual, strict=True))
+            values[i] = values[i] - sum(shares, PRECISE.number(0))
+    return Outcome(tuple(values), tuple(residual), closed)

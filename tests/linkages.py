@@ -1,0 +1,104 @@
+"""Scenes with constraints, built by hand: the lecture's rows 4 to 10 and mechanisms with loops."""
+
+from functools import cache
+
+import sympy as sp
+
+from eomgen import compile
+from eomgen.model import TIME, Constraint, Coordinate, Model, Parameter
+
+R = sp.Rational
+
+
+def symbol(name, **known):
+    return sp.Symbol(name, real=True, **known)
+
+
+def coordinate(name, role="linked"):
+    return Coordinate(name, *(symbol(name + dots) for dots in ("", "'", "''")), role=role)
+
+
+def constraint(name, kind, *residuals):
+    return Constraint(name, kind, residuals, name)
+
+
+def scene(coordinates, constraints, parameters=None, free="", **known):
+    """A model of constraints alone: `{name: (kind, residual, ...)}`."""
+    return Model(
+        "scene",
+        {"en": "Scene"},
+        "solid",
+        (),
+        parameters=tuple(
+            Parameter(n, symbol(n, positive=True), value=sp.sympify(v), positive=True)
+            for n, v in (parameters or {}).items()
+        ),
+        coordinates=tuple(
+            coordinate(c, "free" if c in free.split() else "linked") for c in coordinates.split()
+        ),
+        constraints=tuple(constraint(n, *c) for n, c in constraints.items()),
+        **known,
+    )
+
+
+def machine(*given, **known):
+    return compile.machine_of(scene(*given, **known))
+
+
+x, y, z, theta, phi, psi, s = (symbol(n) for n in ("x", "y", "z", "theta", "phi", "psi", "s"))
+dx, dy, dz, dtheta, dphi, dpsi, ds = (
+    symbol(n + "'") for n in ("x", "y", "z", "theta", "phi", "psi", "s")
+)
+radius, length, omega, alpha = (symbol(n, positive=True) for n in ("R", "l", "w", "alpha"))
+ends = {i: [symbol(f"{a}_{i}") for a in "xyz"] for i in (1, 2)}
+sphere = x**2 + y**2 + z**2 - radius**2
+rod = sum((b - a) ** 2 for a, b in zip(ends[1], ends[2], strict=True)) - length**2
+rolling = (dx - radius * dphi * sp.cos(theta), dy - radius * dphi * sp.sin(theta))
+HOLONOMIC, RATES, GAP = "holonomic", "nonholonomic", "unilateral"
+
+# (coordinates, constraints, parameters, initial values)
+LECTURE = {
+    4: ("x y", {"incline": (HOLONOMIC, y - x * sp.tan(alpha))}, {"alpha": R(1, 2)}, {"x": 1}),
+    5: ("x y z", {"sphere": (HOLONOMIC, sphere)}, {"R": 1}, {"x": R(1, 2), "y": R(1, 2)}),
+    6: (
+        "x_1 y_1 z_1 x_2 y_2 z_2",
+        {"rod": (HOLONOMIC, rod)},
+        {"l": 2},
+        {"x_1": 0, "y_1": 0, "z_1": 0, "x_2": 1, "y_2": 1},
+    ),
+    7: ("x y z", {"outside": (GAP, sphere)}, {"R": 1}, {"z": 1}),
+    8: (
+        "x y z",
+        {"hoop": (HOLONOMIC, x**2 + z**2 - radius**2), "plane": (HOLONOMIC, y)},
+        {"R": 1},
+        {"x": R(3, 5)},
+    ),
+    9: (
+        "x y z",
+        {"sphere": (HOLONOMIC, sphere), "turning": (HOLONOMIC, y - x * sp.tan(omega * TIME))},
+        {"R": 1, "w": R(1, 3)},
+        {"x": R(3, 5)},
+    ),
+    10: ("x y theta phi", {"rolling": (RATES, *rolling)}, {"R": R(1, 2)}, {}),
+}
+
+
+@cache
+def lecture(row):
+    coordinates, constraints, parameters, initial = LECTURE[row]
+    known = {n: sp.sympify(v) for n, v in initial.items()}
+    return machine(coordinates, constraints, parameters, initial=known)
+
+
+def four_bar(crank, coupler, rocker, ground, **known):
+    """Absolute angles a, b, c of three links; the loop closes at the fourth joint."""
+    a, b, c = (symbol(n) for n in "abc")
+    loop = (
+        crank * sp.cos(a) + coupler * sp.cos(b) - rocker * sp.cos(c) - ground,
+        crank * sp.sin(a) + coupler * sp.sin(b) - rocker * sp.sin(c),
+    )
+    return machine("a b c", {"loop": (HOLONOMIC, *loop)}, free="a", **known)
+
+
+def degrees(value):
+    return value * sp.pi / 180
