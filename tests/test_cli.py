@@ -223,6 +223,7 @@ def test_check_goes_on_after_a_bad_spec_and_answers_the_worst(call):
     assert "dimensions of" in line
     for name in ("wrong.yaml:4:1:", "false.yaml: error: expect", "missing.yaml: error: cannot"):
         assert name in said.errors
+    assert call("check", "wrong.yaml", "false.yaml").code == 2
     assert call("check", "false.yaml", "good.yaml").code == 1
     assert call("check", "good.yaml", "good.yaml").code == 0
     assert call("check", "-", stdin=PENDULUM).output.startswith("<stdin>: 1 degree")
