@@ -87,7 +87,12 @@ def derive(spec: str, steps: bool, language: str, templates: Path | None, format
     type=click.Choice(TARGET_NAMES),
     help="What to write, repeatable.  [default: latex, c and python]",
 )
-@click.option("--steps/--no-steps", default=True, help="Partial derivatives in the notes.")
+@click.option(
+    "--steps/--no-steps",
+    default=True,
+    show_default=True,
+    help="Partial derivatives in the text; the LaTeX notes always show them.",
+)
 @click.option("--force", is_flag=True, help="Overwrite files that eomgen did not make.")
 @language_option
 @templates_option
@@ -124,7 +129,7 @@ def check(specs: tuple[str, ...], format_: str) -> None:
     worst = 0
     for spec in specs:
         try:
-            click.echo(summary(spec, _derived(spec), format_))
+            click.echo(summary(files.shown(spec), _derived(spec), format_))
         except EomgenError as error:
             _complain(error, format_, files.shown(spec))
             worst = max(worst, error.exit_code)

@@ -1,10 +1,15 @@
 """Fixtures of several test files."""
 
+import sys
+from dataclasses import dataclass
 from functools import cache
+from io import BytesIO, TextIOWrapper
 
 import pytest
 from commandline import eomgen, together
 from scenes import SHIPPED
+
+from eomgen.cli import main
 
 TARGETS = ("-t", "latex", "-t", "c", "-t", "python", "-t", "text")
 
@@ -25,3 +30,27 @@ def generated(tmp_path_factory):
         return folder
 
     return folder_of
+
+
+@dataclass(frozen=True)
+class Said:
+    """What a command answered."""
+
+    code: int
+    output: str
+    errors: str
+
+
+@pytest.fixture
+def call(monkeypatch, capsys, tmp_path):
+    """The command line in this process, in an empty folder: words and standard input -> Said."""
+    monkeypatch.chdir(tmp_path)
+
+    def answer(*words, stdin=""):
+        monkeypatch.setattr(sys, "argv", ["eomgen", *map(str, words)])
+        monkeypatch.setattr(sys, "stdin", TextIOWrapper(BytesIO(stdin.encode())))
+        with pytest.raises(SystemExit) as end:
+            main()
+        return Said(end.value.code, *capsys.readouterr())
+
+    return answer

@@ -50,10 +50,3 @@ def worst_error(name, function, found):
         size = max(map(abs, terms), default=0) or 1
         worst = max([worst, *(float(abs(w - g) / size) for w, g in zip(wanted, got, strict=True))])
     return worst
-
-
-def condition(name):
-    """The worst condition number of the mass matrix at the random states."""
-    count = len(program_of(name).speeds)
-    matrices = np.array(exact(name)["mass_matrix"], dtype=float).reshape(-1, count, count)
-    return float(np.linalg.cond(matrices).max())

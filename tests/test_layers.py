@@ -28,7 +28,17 @@ ALLOWED: dict[str, set[str]] = {
     "files": {"errors"},
     "shelf": {"errors", "files", "render", "spec"},
     "outputs": RECORDS | {"study", "render", "checks"},
-    "cli": {"__init__", "errors", "files", "outputs", "study", "states", "evaluate", "shelf", "spec"},
+    "cli": {
+        "__init__",
+        "errors",
+        "files",
+        "outputs",
+        "study",
+        "states",
+        "evaluate",
+        "shelf",
+        "spec",
+    },
 }
 
 

@@ -101,9 +101,10 @@ class Along:
     moving: Mapping[int, Form]
     atom_speeds: dict[int, Form] = field(default_factory=dict)
     angle_speeds: dict[int, Form] = field(default_factory=dict)
+    wave_speeds: dict[normal.Wave, Form] = field(default_factory=dict)
 
     def form(self, value: Form) -> Form:
-        """D form, term by term."""
+        """The derivative of a form, term by term."""
         parts = [p for key, c in value.terms.items() for p in self._term(key, c)]
         return normal.total(self.ring, parts)
 
@@ -117,7 +118,7 @@ class Along:
                 parts.append(Form(self.ring, {(rest, wave, sine): c * exponent}) * speed)
         if wave:
             # d cos a = -sin a da,  d sin a = cos a da
-            speed = normal.total(self.ring, (self._angle(a) * f for a, f in wave))
+            speed = self._wave(wave)
             if speed.terms:
                 turned = Form(self.ring, {(monomial, wave, not sine): c if sine else -c})
                 parts.append(turned * speed)
@@ -137,6 +138,12 @@ class Along:
             return number(self.ring, 0)
         partials = functions.partials(self.ring, what)
         return normal.total(self.ring, (p * s for p, s in zip(partials, speeds, strict=True)))
+
+    def _wave(self, wave: normal.Wave) -> Form:
+        if wave not in self.wave_speeds:
+            speeds = (self._angle(angle) * factor for angle, factor in wave)
+            self.wave_speeds[wave] = normal.total(self.ring, speeds)
+        return self.wave_speeds[wave]
 
     def _angle(self, angle: int) -> Form:
         if angle not in self.angle_speeds:

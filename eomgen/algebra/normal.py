@@ -41,7 +41,7 @@ class TooLarge(UsageError):
 
 def exact(value: Number) -> Number:
     """The same number, as an int where it is one (ints are ten times faster)."""
-    return value.numerator if isinstance(value, Fraction) and value.denominator == 1 else value
+    return value.numerator if type(value) is Fraction and value.denominator == 1 else value
 
 
 @dataclass(frozen=True)

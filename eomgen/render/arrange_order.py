@@ -9,7 +9,7 @@ from enum import IntEnum
 import sympy as sp
 
 from eomgen.mechanics.equations import virtual_name
-from eomgen.model import TIME, Model
+from eomgen.model import TIME, Coordinate, Model, Prescribed
 
 
 class Kind(IntEnum):
@@ -65,7 +65,7 @@ def of_model(model: Model) -> Order:
 
 
 def _declared(model: Model) -> Iterator[tuple[Kind, Iterable[sp.Symbol]]]:
-    places = (*model.coordinates, *model.prescribed)
+    places: list[Coordinate | Prescribed] = [*model.coordinates, *model.prescribed]
     yield Kind.PARAMETER, [p.symbol for p in model.parameters]
     yield Kind.COORDINATE, [p.symbol for p in places]
     yield Kind.INPUT, [i.symbol for i in model.inputs]

@@ -171,6 +171,9 @@ def without(factors: Factors, powers: Powers, shared: dict[int, int]) -> Powers:
     if not shared:
         return powers
     exponents = dict(powers)
+    if shared.keys() <= exponents.keys():
+        # the order stays
+        return tuple((f, left) for f, e in powers if (left := e - shared.get(f, 0)))
     for factor, exponent in shared.items():
         exponents[factor] = exponents.get(factor, 0) - exponent
-    return tuple((f, e) for f, e in sorted(exponents.items(), key=factors.place) if e)
+    return factors.sort(exponents.items())

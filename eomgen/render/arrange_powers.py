@@ -17,18 +17,21 @@ from eomgen.render.arrange_sums import LEADS, collected
 from eomgen.render.arrange_terms import Factors, Powers, Term, flat
 
 MOST = 20  # terms of a sum that is tried
+FEW = 8  # terms, and factors in them, where a polynomial is factored
 
 Factored = tuple[Fraction, tuple[tree.Tree, ...]]  # number * sums
 
 
 def by_power(factors: Factors, terms: Sequence[Term]) -> list[Piece]:
     """Groups that share a parameter and have factors, as pieces; nothing if there is none."""
-    left, pieces = list(terms), []
+    # terms are told apart by identity: comparing their numbers would cost more than the rest
+    left, pieces = {id(t): t for t in terms}, []
     for group in _groups(factors, terms):
-        if all(t in left for t in group) and (piece := _factored(factors, group)):
+        if all(id(t) in left for t in group) and (piece := _factored(factors, group)):
             pieces.append(piece)
-            left = [t for t in left if t not in group]
-    return pieces + collected(factors, left) if pieces else []
+            for t in group:
+                del left[id(t)]
+    return pieces + collected(factors, list(left.values())) if pieces else []
 
 
 def by_whole_power(factors: Factors, terms: Sequence[Term]) -> list[Piece]:
@@ -46,10 +49,19 @@ def _groups(factors: Factors, terms: Sequence[Term]) -> Iterator[list[Term]]:
             if exponent > 0:
                 groups.setdefault(factor, []).append(term)
     declared = [groups[f] for f in sorted(groups, key=lambda f: factors.place((f, 1)))]
+    seen: set[tuple[int, ...]] = set()
     for group in (*declared, list(terms)):
-        for part in (group, *_parts(factors, group)):
-            if 3 <= len(part) <= MOST:
-                yield part
+        names = tuple(sorted(map(id, group)))
+        if names not in seen and _may_be_power(factors, group):
+            seen.add(names)
+            yield from (p for p in (group, *_parts(factors, group)) if 3 <= len(p) <= MOST)
+
+
+def _may_be_power(factors: Factors, terms: list[Term]) -> bool:
+    """A cheap necessary mark: two terms with a square, or a root, or a quotient."""
+    powers = [t.parameters + t.motion for t in terms]
+    squares = sum(any(abs(e) > 1 for _, e in p) for p in powers)
+    return squares > 1 or any(e < 0 or f in factors.squares for p in powers for f, e in p)
 
 
 def _parts(factors: Factors, terms: list[Term]) -> list[list[Term]]:
@@ -97,7 +109,7 @@ def _square(factors: Factors, terms: list[Term]) -> Factored | None:
 def _square_with(factors: Factors, terms: list[Term], unit: Term) -> Factored | None:
     """The same with a corner given: roots of the corners, their signs from the mixed terms."""
     numbers = {_whole(t): t.number for t in terms}
-    corners = [unit, *(t for t in terms if t != unit and _ratio(t, unit) is not None)]
+    corners = [unit, *(t for t in terms if t is not unit and _ratio(t, unit) is not None)]
     if len(corners) < 2 or len(terms) != len(corners) * (len(corners) + 1) // 2:
         return None
     number, first = corners[0].number, _root(corners[0], Fraction(1))
@@ -165,7 +177,8 @@ def _with_roots(factors: Factors, terms: list[Term]) -> list[Term]:
 
 def _sums(factors: Factors, terms: list[Term]) -> Factored | None:
     """(number, sums) whose product the terms are; two sums or a higher power of one."""
-    if not (_has_quotient(terms) or sum(_is_cube(t) for t in terms) > 1):
+    cubic = len(terms) <= FEW and sum(_is_cube(t) for t in terms) > 1
+    if not (cubic or _has_quotient(terms)):
         return None
     names, signs, polynomial = _polynomial(terms)
     if not polynomial:
@@ -184,8 +197,10 @@ def _sums(factors: Factors, terms: list[Term]) -> Factored | None:
 
 
 def _has_quotient(terms: list[Term]) -> bool:
-    """Whether something is divided by, in four terms or more."""
-    return len(terms) > 3 and any(e < 0 for t in terms for _, e in t.motion)
+    """Whether something is divided by, in so few terms that factors are found at once."""
+    names = {f for t in terms for f, _ in t.parameters + t.motion}
+    few = 3 < len(terms) <= FEW and len(names) <= FEW
+    return few and any(e < 0 for t in terms for _, e in t.motion)
 
 
 def _is_cube(term: Term) -> bool:

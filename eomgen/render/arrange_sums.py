@@ -133,7 +133,8 @@ def _by_cofactor(factors: Factors, terms: Sequence[Term]) -> list[Piece]:
         if not 2 <= len(largest) < len(left):
             break
         pieces += _one_motion(factors, largest)
-        left = [t for t in left if t not in largest]
+        taken = set(map(id, largest))
+        left = [t for t in left if id(t) not in taken]
     return pieces + [of_term(factors, t) for t in left]
 
 
@@ -183,7 +184,8 @@ def by_parameter(factors: Factors, terms: Sequence[Term]) -> list[Piece]:
     left, pieces = list(terms), []
     while group := _largest(factors, left):
         pieces.append(bracket(factors, group, collected))
-        left = [t for t in left if t not in group]
+        taken = set(map(id, group))
+        left = [t for t in left if id(t) not in taken]
     return pieces + collected(factors, left)
 
 

@@ -209,7 +209,7 @@ def wave_factor(factors: Factors, ripple: Ripple) -> int:
     first = min(angles, key=lambda item: (item[0] == [PI], *item[:2]))
     sign = -1 if first[2] < 0 else 1
     argument = Form(ring, {ring.angles[a]: sign * f for a, f in wave})
-    tie = 2 * int(2 * sum(abs(f) for _, f in wave)) + (not sine)
+    tie = 2 * int(2 * sum(abs(Fraction(f)) for _, f in wave)) + (not sine)
     ranks = sorted({rank for ranks, _, _ in angles for rank in ranks})
     tree = Function("sin" if sine else "cos", (factors.argument(factors, argument),))
     factors.flipped[ripple] = sine and sign < 0

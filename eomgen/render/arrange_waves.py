@@ -236,4 +236,4 @@ def _measure(spelling: Spelling) -> tuple[int, int, Fraction]:
 
 def _degree(ripple: Ripple) -> Fraction:
     """The degree in sines and cosines of single angles."""
-    return sum((Fraction(abs(f)) for _, f in ripple[1]), Fraction(0))
+    return sum((abs(Fraction(f)) for _, f in ripple[1]), Fraction(0))

@@ -10,7 +10,7 @@ import unicodedata
 from collections.abc import Iterator, Mapping
 
 from eomgen.mechanics.equations import virtual_name
-from eomgen.model import Model
+from eomgen.model import Coordinate, Input, Model, Parameter, Prescribed
 from eomgen.render.latex_override import GREEK, checked
 
 LIKE_LATIN = {
@@ -94,9 +94,11 @@ def table(model: Model) -> Mapping[str, str]:
 
 def _symbols(model: Model) -> Iterator[tuple[str, str, int]]:
     """(symbol, LaTeX of its name, number of dots)."""
-    for record in (*model.parameters, *model.inputs):
+    plain: list[Parameter | Input] = [*model.parameters, *model.inputs]
+    places: list[Coordinate | Prescribed] = [*model.coordinates, *model.prescribed]
+    for record in plain:
         yield record.symbol.name, of_record(record.name, record.description.latex), 0
-    for place in (*model.coordinates, *model.prescribed):
+    for place in places:
         spelling = of_record(place.name, place.description.latex)
         yield place.symbol.name, spelling, 0
         yield place.rate.name, spelling, 1

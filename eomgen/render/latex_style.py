@@ -70,11 +70,11 @@ def display(rows: Rows) -> str:
 
 
 def broken(formula: str, limit: float) -> list[str]:
-    r"""Lines of a formula; \left( ... \right) gives way to \Bigl( ... \Bigr) where it must break."""
+    r"""Lines of a formula; \left( gives way to \Bigl( where a bracket must be broken."""
     found = layout.lines(formula, limit, width)
     if all(width(line) <= limit for line in found):
         return found
-    loose = re.sub(r"\\(left|right)([()])", lambda m: FIXED[m[1]] + m[2], formula)
+    loose = re.sub(r"\\(left|right)([()|])", lambda m: FIXED[m[1]] + m[2], formula)
     return layout.lines(loose, limit, width)
 
 

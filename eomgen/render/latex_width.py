@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import lru_cache
 
 TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[^\s&]")
 
@@ -18,7 +19,8 @@ LETTERS = {  # of the italic alphabet, where they are not near to a figure
 MACROS = {
     **dict.fromkeys((r"\sin", r"\cos", r"\tan", r"\ln", r"\min", r"\max"), 3.2),
     **dict.fromkeys((r"\arcsin", r"\arccos", r"\arctan"), 5.5),
-    **dict.fromkeys((r"\left", r"\right", r"\Bigl", r"\Bigr", "\\\\"), 0.0),
+    **dict.fromkeys((r"\left", r"\right", r"\Bigl", r"\Bigr"), 0.8),
+    "\\\\": 0.0,
     r"\operatorname": 0.4, r"\quad": 2.0, r"\qquad": 4.0, r"\,": 0.35, r"\;": 0.6,
     r"\cdot": 1.4, r"\partial": 1.1,
 }  # fmt: skip
@@ -32,6 +34,7 @@ WRAPPERS = frozenset(
 )
 
 
+@lru_cache(maxsize=4096)
 def width(formula: str) -> float:
     """About how many figures wide the formula is printed."""
     tokens = TOKEN.findall(formula)

@@ -50,7 +50,8 @@ def _end(widths: list[float], depths: list[int], start: int, limit: float) -> in
     """How far a line goes: to the last outer break that fills half of it, else to the last."""
     if sum(widths[start:]) <= limit:
         return len(widths)
-    ends, total = [], 0.0
+    ends: list[tuple[int, float]] = []
+    total = 0.0
     for i in range(start, len(widths)):
         total += widths[i]
         if total > limit and ends:

@@ -35,6 +35,7 @@ from eomgen.render.notes_page import (
 from eomgen.render.style import Style
 from eomgen.render.tree import Tree
 
+REPEATED = 60  # terms of a Lagrangian that is written out below T and V
 PARTS = ("inertia", "damping", "elastic", "gravity", "other", "applied")
 
 
@@ -124,15 +125,10 @@ def _energies(page: Page) -> dict[str, object]:
     d = page.derivation
     kinetic = arranged(page, arrange.kinetic, d.kinetic_energy)
     potential = arranged(page, arrange.potential, d.potential_energy)
-    lagrangian = ""
-    if not isinstance(kinetic, int) and not isinstance(potential, int):
-        difference = joined([kinetic, tree.negated(potential)])
-        minus = page.style.formula(tree.negated(tree.ONE))[0]
-        lagrangian = page.style.display([(f"L = T {minus} V", page.style.formula(difference))])
     return {
         "kinetic": _energy(page, "T", d.kinetic, arrange.kinetic, spelled(page, kinetic)),
         "potential": _energy(page, "V", d.potential, arrange.potential, spelled(page, potential)),
-        "lagrangian": lagrangian,
+        "lagrangian": _lagrangian(page, kinetic, potential),
         "dissipation": _energy(
             page,
             "D",
@@ -141,6 +137,17 @@ def _energies(page: Page) -> dict[str, object]:
             formula(page, arrange.dissipation, d.dissipation_function),
         ),
     }
+
+
+def _lagrangian(page: Page, kinetic: Tree | int, potential: Tree | int) -> str:
+    """L = T - V, written out unless it would only repeat two long formulas."""
+    minus = page.style.formula(tree.negated(tree.ONE))[0]
+    difference = f"T {minus} V"
+    if not isinstance(kinetic, int) and not isinstance(potential, int):
+        whole = joined([kinetic, tree.negated(potential)])
+        if tree.size(whole) <= REPEATED:
+            return page.style.display([(f"L = {difference}", page.style.formula(whole))])
+    return page.style.display([("L", difference)])
 
 
 def _energy(

@@ -1,0 +1,37 @@
+"""What the README shows is what the tool prints."""
+
+import re
+from pathlib import Path
+
+from click.testing import CliRunner
+
+from eomgen.cli import commands
+
+README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+SPEC = re.search(r"```yaml\n(eom: 1.*?)```", README, re.DOTALL)[1]
+
+
+def run(command, text, name, folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    Path(name).write_text(text, encoding="utf-8")
+    return CliRunner().invoke(commands, [command, name])
+
+
+def test_derivation_is_the_one_shown(tmp_path, monkeypatch):
+    result = run("derive", SPEC, "my_pendulum.yaml", tmp_path, monkeypatch)
+    assert result.exit_code == 0
+    assert f"```\n{result.stdout.rstrip()}\n```" in README
+
+
+def test_errors_are_those_shown(tmp_path, monkeypatch):
+    text = SPEC.replace("stiffness: k", "stifness: k").replace("sin(phi)", "sin(ph)")
+    result = run("check", text, "bad.yaml", tmp_path, monkeypatch)
+    assert result.exit_code == 2
+    assert f"```\n{result.stderr.rstrip()}\n```" in README
+
+
+def test_there_are_two_commands_that_set_up():
+    commands = re.findall(r"^python3 -m venv .*$", README, re.MULTILINE)
+    assert len(commands) == 2
+    assert commands[0].endswith("eomgen generate specs/slider_pendulum.yaml -o out")
+    assert commands[1].endswith("pytest")
