@@ -98,7 +98,9 @@ def _partials(kinematics: Kinematics[Node], name: str) -> tuple[Vector[Node], ..
 
 def _touching(kinematics: Kinematics[Node], row: Row[Node]) -> str:
     """The one point whose place decides the gap."""
-    found = _distinct(kinematics, [p for p in _material(kinematics) if _decides(kinematics, p, row)])
+    found = _distinct(
+        kinematics, [p for p in _material(kinematics) if _decides(kinematics, p, row)]
+    )
     who = f"the friction of {row.constraint.name}"
     if not found:
         raise UsageError(
