@@ -1,4 +1,4 @@
-"""Functions of a scene with contacts: gaps, impacts, and for each mode its motion and its events."""
+"""Functions of a scene with contacts: gaps, impacts, and of each mode its motion and events."""
 
 from __future__ import annotations
 

@@ -64,8 +64,9 @@ def positions(
     machine: Machine,
     guess: Mapping[str, Any] | None = None,
     given: Mapping[str, Any] | None = None,
+    time: Any = 0,
 ) -> Admissible:
-    """The admissible state nearest to the given one, at t = 0; by default the spec's own.
+    """The admissible state nearest to the given one; by default the spec's own at t = 0.
 
     given: known values by name, `q` or `q'`; guess: where the search for the others starts, from
     zero where it says nothing. Known values move only where the rows cannot hold otherwise.
@@ -81,7 +82,7 @@ def positions(
     values = {n: linkages.constant(linkage, v, parameters) for n, v in starts.items()}
     zero = PRECISE.number(0)
     state = State(
-        zero,
+        linkages.constant(linkage, time, parameters),
         tuple(values.get(c.name, zero) for c in model.coordinates),
         tuple(values.get(c.rate.name, zero) for c in model.coordinates),
         parameters,
@@ -94,8 +95,50 @@ def positions(
         *_moves(names, state.coordinates, moving.coordinates, known),
         *_moves(rates, state.rates, moving.rates, known),
     ]
+    if known:
+        _refuse_penetration(linkage, moving)
     free = [i for i, n in enumerate(names) if n not in known]
     return Admissible(moving, tuple(moves), _others(linkage, moving, free), stand_ins)
+
+
+def _refuse_penetration(linkage: Linkage, state: State) -> None:
+    """A gap below zero is not admissible, and no search can say how far to open it."""
+    for name, gap in negative_gaps(linkage, state):
+        raise UsageError(
+            f"the initial state violates the unilateral constraint {name}: its gap is "
+            f"{float(gap):.6g}, below zero; give `initial` values with a gap of zero or more"
+        )
+
+
+def negative_gaps(linkage: Linkage, state: State) -> list[tuple[str, Any]]:
+    """Name and gap of the unilateral constraints that are violated."""
+    gaps = linkages.values(linkage, [gap for _, gap in linkage.gaps], state, PRECISE)
+    pairs = zip((name for name, _ in linkage.gaps), gaps, strict=True)
+    return [(name, gap) for name, gap in pairs if gap < -MOVED]
+
+
+def describe(machine: Machine, found: Admissible) -> tuple[str, ...]:
+    """Sentences on how far the state was moved and what else fits the known values."""
+    names = [c.name for c in machine.model.coordinates]
+    lines = []
+    for known, words in ((True, "known values moved"), (False, "dependent values found")):
+        moved = [
+            f"{m.name} {_short(m.start)} -> {_short(m.found)}"
+            for m in found.moves
+            if m.known == known
+        ]
+        if moved:
+            lines.append(f"{words}: {', '.join(moved)}")
+    for other in found.others:
+        where = ", ".join(f"{n} = {_short(v)}" for n, v in zip(names, other, strict=True))
+        lines.append(f"another assembly mode: {where}")
+    if found.stand_ins:
+        lines.append(f"parameters without a value stand in at random: {', '.join(found.stand_ins)}")
+    return tuple(lines)
+
+
+def _short(value: Any) -> str:
+    return f"{float(value):.6g}"
 
 
 def _moves(
@@ -240,7 +283,9 @@ def _random(
         return None
     state = replace(state, coordinates=outcome.values)
     outcome = newton.close(rate_problem(linkage, state), rates, range(len(rates)))
-    return replace(state, rates=outcome.values) if outcome.closed else None
+    if not outcome.closed or negative_gaps(linkage, state):
+        return None
+    return replace(state, rates=outcome.values)
 
 
 def _is_inside(values: Sequence[Any], boxes: Sequence[Box]) -> bool:

@@ -2,7 +2,8 @@
 
 X_1 .. X_d span the null space of the rows. D_1 = span X, D_(k+1) = D_k + [D_1, D_k], with
 [X, Y] = DY X - DX Y. By Frobenius, n - (last dimension) relations between positions hold.
-For rows that depend on time, or drift at rest, the time is one more coordinate (Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, 1994, ch. 7).
+For rows that depend on time, or drift at rest, the time is one more coordinate (Murray, Li, Sastry,
+A Mathematical Introduction to Robotic Manipulation, 1994, ch. 7).
 """
 
 from __future__ import annotations
@@ -71,7 +72,8 @@ def growth(
     dimensions = [len(fields)]
     most = len(given.symbols)
     while newest and dimensions[-1] < most:
-        brackets = [bracket(linkage, given.symbols, x, y) for x in fields for y in newest]
+        pairs = ((x, y) for i, x in enumerate(fields) for y in _partners(i, newest, fields))
+        brackets = [bracket(linkage, given.symbols, x, y) for x, y in pairs]
         newest = _independent(linkage, spanning, brackets, states)
         spanning += newest
         dimensions.append(len(spanning))
@@ -79,6 +81,11 @@ def growth(
             dimensions.pop()
             break
     return Growth(tuple(dimensions), given.with_time, tuple(spanning))
+
+
+def _partners(i: int, newest: Sequence[Field], fields: Sequence[Field]) -> Sequence[Field]:
+    """What the i-th field is bracketed with: [X, Y] = -[Y, X] is taken once."""
+    return newest[i + 1 :] if newest == fields else newest
 
 
 @dataclass(frozen=True)

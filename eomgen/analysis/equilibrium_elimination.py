@@ -126,9 +126,7 @@ class Quotient:
         for _ in range(degree - 1):
             powers.append(matrix * powers[-1])
         identity = DomainMatrix.eye(self.size, sp.QQ).to_dense()
-        over = [
-            self._numerator(v, powers, horner) for v in (identity, *self.multiplications)
-        ]
+        over = [self._numerator(v, powers, horner) for v in (identity, *self.multiplications)]
         real = tuple(_point(over, root) for root in _real_roots(form))
         return Solutions(real, degree, self.size)
 

@@ -53,6 +53,7 @@ class Linkage:
 
     kinematics: Kinematics[Node]
     rows: tuple[Row[Node], ...]
+    gaps: tuple[tuple[str, Node], ...] = ()  # of unilateral constraints: name, gap >= 0
 
     @property
     def model(self) -> Model:
@@ -97,7 +98,13 @@ def of(scene: Machine) -> Linkage:
     if model.speeds:
         kinematics = machine.graph_kinematics(without_speeds(model))
     rows = constraints.rows(kinematics)
-    return Linkage(kinematics, tuple(sorted(rows, key=lambda r: not r.is_holonomic)))
+    gaps = tuple(
+        (c.name, gap)
+        for c in model.constraints
+        if c.kind == "unilateral"
+        for gap in constraints.residuals_of(kinematics, c)
+    )
+    return Linkage(kinematics, tuple(sorted(rows, key=lambda r: not r.is_holonomic)), gaps)
 
 
 def _refuse_inputs(model: Model, constraint: Constraint) -> None:

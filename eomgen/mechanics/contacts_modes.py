@@ -6,6 +6,7 @@ Everything that a mode's events watch is positive inside it: a mode ends where o
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -100,10 +101,8 @@ def _all(contacts: Sequence[Contact]) -> tuple[Mode, ...]:
         )
     choices = product(*(states_of(c) for c in contacts))
     found = tuple(_mode(contacts, choice) for choice in choices) if contacts else ()
-    names = [m.name for m in found]
-    for name in names:
-        if names.count(name) > 1:
-            raise UsageError(f"two modes would be called {name}: rename one of the constraints")
+    if twice := [name for name, count in Counter(m.name for m in found).items() if count > 1]:
+        raise UsageError(f"two modes would be called {twice[0]}: rename one of the constraints")
     return found
 
 

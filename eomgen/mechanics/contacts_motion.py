@@ -195,7 +195,7 @@ def eliminated(
     rows = [[*row, *(b[i] for b in rights)] for i, row in enumerate(matrix)]
     pivots = []
     for k in range(size):
-        pivots.append((rows[k][k], matrix[k][k]))
+        pivots.append((_positive(rows[k][k]), matrix[k][k]))
         for i in range(k + 1, size):
             factor = rows[i][k] / rows[k][k]
             rows[i][k + 1 :] = [
@@ -205,10 +205,20 @@ def eliminated(
     return solutions, tuple(p for p in pivots if p[0].operator != "number")
 
 
+def _positive(pivot: Node) -> Node:
+    """The pivot, unless it is a number that is not positive."""
+    if pivot.operator == "number" and pivot.datum <= 0:
+        raise UsageError(
+            "the contact forces are not determined whatever the state: friction jams "
+            "(Painleve's paradox); lower its coefficient"
+        )
+    return pivot
+
+
 def _substituted(rows: Sequence[Sequence[Node]], side: int) -> list[Node]:
     """The solution of the triangular system for one right side."""
     found: list[Node] = []
-    for k in reversed(range(side if not rows else len(rows))):
+    for k in reversed(range(len(rows))):
         rest = [-v for v in rows[k][k + 1 : len(rows)]]
         found.insert(0, _plus(rows[k][side], rest, found) / rows[k][k])
     return found

@@ -110,8 +110,8 @@ def _touching(kinematics: Kinematics[Node], row: Row[Node]) -> str:
         )
     if len(found) > 1:
         raise UsageError(
-            f"{who} may act on {' or '.join(found)}: '{row.constraint.text}' does not tell, because "
-            "the place of each decides it; use more coordinates and constraints, or leave it out"
+            f"{who} may act on {' or '.join(found)}: '{row.constraint.text}' does not tell, as the "
+            "place of each decides it; use more coordinates and constraints, or leave it out"
         )
     if _rank_of(kinematics, _partials(kinematics, found[0])) < max(2, kinematics.dimensions):
         raise UsageError(

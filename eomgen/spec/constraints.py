@@ -1,5 +1,6 @@
 """`constraints`: relations that the coordinates keep, as residuals or as two places set equal."""
 
+import math
 from collections.abc import Callable
 
 import sympy as sp
@@ -103,7 +104,7 @@ def _of_positions(relation: Relation, scene: Scene) -> sp.Expr:
 
 
 def _of_rates(relation: Relation, scene: Scene) -> sp.Expr:
-    """left - right, which must hold a rate and be linear in the rates: d^2/dx'dy' = 0."""
+    """left - right, which must hold a rate and be linear in the rates."""
     use = "nonholonomic constraint"
     found = residual(relation, scene, Wanted(use, f"a {use}"))
     rates = _among(found, 1, scene)
@@ -111,12 +112,37 @@ def _of_rates(relation: Relation, scene: Scene) -> sp.Expr:
         message = f"'{relation.span.text}' holds no rate"
         hint = "write 'holonomic' for a relation between coordinates"
         raise Mistake(relation.span, "E511", message, hint)
-    for rate in rates:
-        if not found.diff(rate).free_symbols.isdisjoint(rates):
-            message = f"'{relation.span.text}' is not linear in {rate}"
-            hint = "write it with the rates to the first power, coefficients of coordinates and t"
-            raise Mistake(relation.span, "E511", message, hint)
+    if not _is_linear(found, set(rates)):
+        message = f"'{relation.span.text}' is not linear in the rates"
+        hint = "write it with the rates to the first power, coefficients of coordinates and t"
+        raise Mistake(relation.span, "E511", message, hint)
     return found
+
+
+def _is_linear(formula: sp.Expr, rates: set[sp.Symbol]) -> bool:
+    """Whether d/dx' holds no rate, for every rate x'; as it is written tells most."""
+    degree = _degree(formula, rates)
+    if degree <= 1 or degree == math.inf:
+        return degree <= 1
+    return all(formula.diff(rate).free_symbols.isdisjoint(rates) for rate in rates)
+
+
+def _degree(formula: sp.Expr, rates: set[sp.Symbol]) -> float:
+    """The degree in the rates as it is written; infinite where it is no polynomial of them.
+
+    A derivative of nested functions may be too long to look at, so it is not taken.
+    """
+    if formula.free_symbols.isdisjoint(rates):
+        return 0
+    if formula.is_Symbol:
+        return 1
+    if formula.is_Add:
+        return max(_degree(term, rates) for term in formula.args)
+    if formula.is_Mul:
+        return sum(_degree(factor, rates) for factor in formula.args)
+    if formula.is_Pow and formula.exp.is_Integer and formula.exp > 0:
+        return int(formula.exp) * _degree(formula.base, rates)
+    return math.inf
 
 
 RESIDUALS: dict[str, Callable[[Relation, Scene], sp.Expr]] = {
