@@ -131,7 +131,7 @@ def check(specs: tuple[str, ...], format_: str) -> None:
         try:
             click.echo(summary(files.shown(spec), _derived(spec), format_))
         except EomgenError as error:
-            _complain(error, format_, files.shown(spec))
+            _complain(error, format_, files.shown(spec), err=format_ != "json")
             worst = max(worst, error.exit_code)
     sys.exit(worst)
 
@@ -261,16 +261,16 @@ def _derived(spec: str) -> Study:
     return study.of_text(text, files.shown(spec))
 
 
-def _complain(error: EomgenError, format_: str, source: str) -> None:
-    """The error on standard error: faults with their places, or one line for each mistake."""
+def _complain(error: EomgenError, format_: str, source: str, *, err: bool = True) -> None:
+    """The error in words: faults with their places, or one line for each mistake."""
     if isinstance(error, SpecError):
         from eomgen.spec.report import render
 
-        click.echo(render(error.faults, format_), err=True)
+        click.echo(render(error.faults, format_), err=err)
         return
     from eomgen.outputs import complaint
 
-    click.echo(complaint(error, format_, source), err=True)
+    click.echo(complaint(error, format_, source), err=err)
 
 
 def main() -> NoReturn:

@@ -13,12 +13,20 @@ from eomgen.algebra import ldl
 from eomgen.algebra.assemble import assemble
 from eomgen.algebra.graph import Node
 from eomgen.dimension import NONE, TIME, Dimension
-from eomgen.mechanics import constraints, energies, machine, multipliers, virtual_work
+from eomgen.mechanics import (
+    constraints,
+    energies,
+    machine,
+    multipliers,
+    speeds,
+    virtual_work,
+)
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.equations import Contribution, Equations
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.vectors import dot
-from eomgen.model import Coordinate, Description, Model, Prescribed
+from eomgen.model import TIME as TIME_SYMBOL
+from eomgen.model import Coordinate, Description, Model, Prescribed, Speed
 from eomgen.program import Function, Program, Variable
 from eomgen.spec.units import si_unit
 
@@ -233,10 +241,20 @@ def _moving(model: Model, moving: Coordinate | Prescribed) -> Variable:
     return _variable(moving.name, moving.description, model.initial.get(moving.name))
 
 
+def _initial(model: Model, speed: Speed) -> sp.Expr | None:
+    """The speed's value where the spec gives the coordinates, rates and parameters it needs."""
+    values: dict[sp.Symbol, sp.Expr] = {TIME_SYMBOL: sp.S.Zero}
+    for c in model.coordinates:
+        values |= {s: model.initial[s.name] for s in (c.symbol, c.rate) if s.name in model.initial}
+    values |= {p.symbol: p.value for p in model.parameters if p.value is not None}
+    value = speeds.spelled_out(model, speed.formula).xreplace(values)
+    return None if value.free_symbols else value
+
+
 def _speeds(model: Model) -> tuple[Variable, ...]:
     """The declared speeds, or one rate for each coordinate."""
     if model.speeds:
-        return tuple(_variable(s.name, s.description) for s in model.speeds)
+        return tuple(_variable(s.name, s.description, _initial(model, s)) for s in model.speeds)
     return tuple(
         Variable(
             c.rate.name,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -96,19 +96,7 @@ def speeds_of(state: State, model: Model) -> tuple[sp.Expr, ...]:
         values |= {coordinate.symbol: position, coordinate.rate: rate}
     free = [p for p in model.parameters if p.formula is None]
     values |= {p.symbol: v for p, v in zip(free, state.parameters, strict=True)}
-    return tuple(_substituted(s.formula, model, values) for s in model.speeds)
-
-
-def _substituted(formula: sp.Expr, model: Model, values: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
-    """A formula with derived parameters, prescribed motions and then values put in."""
-    definitions = {p.symbol: p.formula for p in model.parameters if p.formula is not None}
-    for known in model.prescribed:
-        rate = sp.diff(known.formula, TIME)
-        definitions |= {known.symbol: known.formula, known.rate: rate}
-        definitions[known.acceleration] = sp.diff(rate, TIME)
-    while formula.free_symbols & definitions.keys():
-        formula = formula.xreplace(definitions)
-    return formula.xreplace(dict(values))
+    return tuple(speeds.spelled_out(model, s.formula).xreplace(values) for s in model.speeds)
 
 
 def _interpreter(source: Program, model: Model) -> Call:

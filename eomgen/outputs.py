@@ -12,6 +12,7 @@ from eomgen.errors import EomgenError
 from eomgen.render.notes import Notes
 from eomgen.render.targets import TARGETS, Named, render
 from eomgen.render.templating import environment
+from eomgen.spec.report import escaped
 from eomgen.study import Report, Study
 
 
@@ -132,7 +133,7 @@ def _json_summary(spec: str, study: Study) -> str:
 
 
 def _github_summary(spec: str, study: Study) -> str:
-    return f"::notice file={spec}::{check_line(study.report, 'en')}"
+    return f"::notice file={escaped(spec, ':,')}::{escaped(check_line(study.report, 'en'))}"
 
 
 SUMMARIES: dict[str, Callable[[str, Study], str]] = {
@@ -155,6 +156,6 @@ COMPLAINTS: dict[str, Callable[[str, str], str]] = {
         [{"file": source, "message": line} for line in message.splitlines()], ensure_ascii=False
     ),
     "github": lambda message, source: "\n".join(
-        f"::error file={source}::{line}" for line in message.splitlines()
+        f"::error file={escaped(source, ':,')}::{escaped(line)}" for line in message.splitlines()
     ),
 }

@@ -135,8 +135,10 @@ def test_all_mistakes_of_a_spec_have_their_places(call, command):
 def test_mistakes_as_json(call, command):
     Path("a.yaml").write_text(WRONG)
     said = call(command, "a.yaml", "--format", "json")
-    faults = json.loads(said.errors)
-    assert (said.code, said.output) == (2, "")
+    # the answer of `check` is the list of faults, so it is on standard output
+    answer, other = (said.output, said.errors) if command == "check" else (said.errors, said.output)
+    faults = json.loads(answer)
+    assert (said.code, other) == (2, "")
     assert [(f["file"], f["line"], f["column"]) for f in faults] == [
         ("a.yaml", 4, 1),
         ("a.yaml", 5, 19),
@@ -166,7 +168,8 @@ def test_a_false_claim_ends_with_1_and_writes_nothing(call, command, tmp_path):
     assert (said.code, said.output) == (1, "")
     assert said.errors.startswith("<stdin>: error: expect: the equation `m*l*phi''")
     assert not list(tmp_path.iterdir())
-    (mistake,) = json.loads(call(command, "-", "--format", "json", stdin=FALSE).errors)
+    said = call(command, "-", "--format", "json", stdin=FALSE)
+    (mistake,) = json.loads(said.output if command == "check" else said.errors)
     assert mistake["file"] == "<stdin>"
     assert mistake["message"].startswith("expect: the equation")
     said = call(command, "-", "--format", "github", stdin=FALSE)

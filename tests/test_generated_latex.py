@@ -26,7 +26,9 @@ def test_notes_are_typeset(name, language, generated):
     file = generated(name) / language / f"{name}.tex"
     log = typeset(file)
     assert file.with_suffix(".pdf").read_bytes().startswith(b"%PDF-")
-    excesses = [float(e) for e in re.findall(r"^Overfull \\hbox \(([\d.]+)pt", log, re.MULTILINE)]
+    excesses = [
+        float(e) for e in re.findall(r"^Overfull \\[hv]box \(([\d.]+)pt", log, re.MULTILINE)
+    ]
     assert max(excesses, default=0.0) <= WIDEST_EXCESS
     assert "Missing character" not in log
     assert "LaTeX Warning" not in log

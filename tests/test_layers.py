@@ -27,7 +27,7 @@ ALLOWED: dict[str, set[str]] = {
     "evaluate": RECORDS | {"mechanics", "compile", "interpreter", "render", "numerics", "states"},
     "files": {"errors"},
     "shelf": {"errors", "files", "render", "spec"},
-    "outputs": RECORDS | {"study", "render", "checks"},
+    "outputs": RECORDS | {"study", "render", "checks", "spec"},
     "cli": {
         "__init__",
         "errors",

@@ -186,17 +186,19 @@ def potential(algebra: ClosedForm, one_form: OneForm) -> Form | None:
     return result if all(algebra.is_zero(c) for c in checks) else None
 
 
-def factors(algebra: ClosedForm, variables: Sequence[sp.Symbol]) -> list[Form]:
-    """Integrating factors worth trying: 1, then functions of one variable each."""
+def factors(algebra: ClosedForm, one_form: OneForm) -> list[Form]:
+    """Integrating factors worth trying: 1, functions of one variable each, sums that divide."""
     found = [algebra.number(1)]
-    for variable in variables:
+    entries = [(v, entry) for v, entry in one_form if entry.terms]
+    for variable, _ in entries:
         v = algebra.of(variable)
         found += [v**k for k in (-1, -2, 1, 2, -3, 3)]
         for name in ("sin", "cos"):
             wave = algebra.apply(name, v)
             found += [wave, normal.inverse(wave), normal.inverse(wave * wave)]
         found += [algebra.apply("exp", v), algebra.apply("exp", -v)]
-    return found
+    sums = dict.fromkeys(normal.split_content(entry)[1] for _, entry in entries)
+    return found + [normal.inverse(s) for s in sums if len(s.terms) > 1]
 
 
 Factored = tuple[Form, Form]  # (factor, phi)
@@ -204,9 +206,8 @@ Factored = tuple[Form, Form]  # (factor, phi)
 
 def integrated(algebra: ClosedForm, one_form: OneForm) -> Factored | None:
     """A factor of the table and phi with d phi = factor * one-form, phi without logarithm first."""
-    variables = [v for v, entry in one_form if entry.terms]
     logarithmic: Factored | None = None
-    for factor in factors(algebra, variables):
+    for factor in factors(algebra, one_form):
         candidate = [(v, factor * entry) for v, entry in one_form]
         found = potential(algebra, candidate) if is_exact(algebra, candidate) else None
         if found is None or not found.terms:

@@ -11,7 +11,6 @@ from decimal import Decimal
 from itertools import combinations
 from typing import Any
 
-
 from eomgen.algebra import normal
 from eomgen.algebra.closed import ClosedForm
 from eomgen.algebra.normal import Form
@@ -23,6 +22,7 @@ from eomgen.analysis.equilibrium_polish import Root, decimal
 from eomgen.analysis.equilibrium_polynomials import usage
 from eomgen.analysis.equilibrium_records import Equilibria, Equilibrium, Stability, Statics
 from eomgen.analysis.equilibrium_scene import scene
+from eomgen.analysis.equilibrium_search import typical_slope
 from eomgen.analysis.equilibrium_stability import null_space, stability
 from eomgen.model import Constraint, Model
 
@@ -84,9 +84,7 @@ class _Part:
     @staticmethod
     def of(model: Model, touching: tuple[str, ...], values: Given) -> _Part:
         """Solved."""
-        closed = replace(
-            model, constraints=tuple(_closed(c, touching) for c in model.constraints)
-        )
+        closed = replace(model, constraints=tuple(_closed(c, touching) for c in model.constraints))
         statics = equations(closed)
         numeric = _numeric(statics, values)
         forces = [numeric.of(b.force) for b in statics.balances]
@@ -146,7 +144,8 @@ class _Part:
         )
 
     def _stability(self, root: Root, multipliers: Mapping[str, Decimal]) -> Stability:
-        decided = stability(self.problem.scene, root, self.conservative)
+        typical = typical_slope(self.problem.scene, self.problem.box)
+        decided = stability(self.problem.scene, root, self.conservative, typical)
         loose = [n for n in self.touching if multipliers[n] == 0]
         if decided.verdict != "stable" or not loose:
             return decided
@@ -176,9 +175,7 @@ def _has_potential(model: Model, forces: Sequence[Form]) -> bool:
     return all(normal.is_zero(slope(i, j) - slope(j, i)) for i, j in pairs)
 
 
-def _reactions(
-    model: Model, multipliers: Mapping[str, Decimal]
-) -> dict[str, tuple[Decimal, ...]]:
+def _reactions(model: Model, multipliers: Mapping[str, Decimal]) -> dict[str, tuple[Decimal, ...]]:
     """The force on the first of two points that coincide: phi = first - second, so it is lambda."""
     found = {}
     for c in model.constraints:
@@ -207,5 +204,3 @@ def _notes(model: Model, values: Given, parts: Sequence[_Part]) -> tuple[str, ..
         notes.append("unilateral constraints were tried one at a time, not together")
     notes += [n for part in parts for n in part.found.notes]
     return tuple(dict.fromkeys(notes))
-
-

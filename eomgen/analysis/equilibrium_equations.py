@@ -15,11 +15,12 @@ from eomgen.algebra import normal
 from eomgen.algebra.arithmetic import over
 from eomgen.algebra.closed import ClosedForm, Evaluation
 from eomgen.algebra.normal import Form, Kernel
+from eomgen.algebra.scalar import S
 from eomgen.analysis.equilibrium_records import Balance, Link, Statics
 from eomgen.errors import UsageError
 from eomgen.mechanics import constraints, efforts
 from eomgen.mechanics.equations import Contribution
-from eomgen.mechanics.kinematics import Flow, Kinematics, S
+from eomgen.mechanics.kinematics import Flow, Kinematics
 from eomgen.mechanics.lagrange import Lagrangian, closed_kinematics, virtual_symbol
 from eomgen.model import TIME, Coordinate, Model
 

@@ -1,5 +1,7 @@
-"""Roots of the equilibrium equations: by exact elimination where they are polynomials, else from
-many starts.
+"""Roots of the equilibrium equations, by the first method that applies.
+
+Exact elimination where they are polynomials, interval arithmetic where there is one unknown, else
+Newton's method from many starts.
 """
 
 from __future__ import annotations
@@ -202,7 +204,8 @@ def _searched(problem: Problem, why: str) -> Found:
     family = len(singular) > FAMILY or sum(h.count == 1 for h in singular) > 1
     chosen = [*regular, *singular[: SHOWN_OF_FAMILY if family else None]]
     points = [
-        polish.root(problem.scene, h.coordinates, h.multipliers, problem.free) for h in chosen
+        polish.root(problem.scene, list(h.coordinates), list(h.multipliers), problem.free)
+        for h in chosen
     ]
     notes = (f"the equilibria form a continuous family, {SHOWN_OF_FAMILY} members are shown",)
     return Found(

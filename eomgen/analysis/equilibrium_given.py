@@ -19,7 +19,7 @@ from eomgen.mechanics import machine
 from eomgen.model import TIME, Coordinate, Model
 
 REACH = 10  # lengths are searched up to so many times the size of the scene
-Number = int | float | Fraction | Decimal | sp.Expr
+Number = Any  # int, float, Fraction, Decimal or a SymPy number, which has no types
 
 
 @dataclass(frozen=True)

@@ -89,7 +89,7 @@ def prove(scene: Scene, low: float, high: float) -> Proof:
 def _count(scene: Scene, left: float, right: float) -> int | None:
     """0 or 1 where that is proven."""
     value, slope = _values(scene, left, right)
-    if value is None or not 0 in value:
+    if value is None or 0 not in value:
         return None if value is None else 0
     if slope is None or 0 in slope:
         return None

@@ -1,7 +1,7 @@
 """Roots by Newton's method from many starts: what is found is a root, what is missed is not known.
 
-The starts are a low-discrepancy sequence (Roberts: x_n = frac(n a), a_k = p^-k with p^(d+1) = p + 1)
-in the given box, so that the same scene gives the same starts.
+The starts are a low-discrepancy sequence in the given box (Roberts: x_n = frac(n a), a_k = p^-k
+with p^(d+1) = p + 1), so that the same scene gives the same starts.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 
 STARTS = 400
 ITERATIONS = 120
+SAMPLES = 16  # points at which typical sizes are read off
 SAME = 1e-6  # of the size of the box: nearer roots are one
 ACCEPTED = 1e-9  # residual, of the typical one at the starts
 RANK = 1e-7  # singular values below this share of the largest are zero
@@ -70,7 +71,8 @@ def search(scene: Scene, box: Box, free: Sequence[int], starts: int = STARTS) ->
     for _ in range(ITERATIONS):
         q, multipliers = unknown.step(q, multipliers)
     residual = unknown.residual(q, multipliers)
-    good = np.isfinite(residual).all(axis=1) & (np.abs(residual) <= ACCEPTED * scale).all(axis=1)
+    small = np.isfinite(residual) & (np.abs(residual) <= ACCEPTED * scale)
+    good = np.all(small, axis=1)
     hits = _merged(box, q, multipliers, good)
     return Search(tuple(hits), starts, int(starts - good.sum()))
 
@@ -151,6 +153,16 @@ def system_matrix(
     above = np.concatenate([slopes, np.swapaxes(jacobian, 1, 2)], axis=2)
     below = np.concatenate([positions, np.zeros((count, positions.shape[1], rows))], axis=2)
     return np.concatenate([above, below], axis=1)
+
+
+def typical_slope(scene: Scene, box: Box) -> float:
+    """The size of the largest d Q_i / d q_j at points of the box, without multipliers."""
+    q = box.low + box.width * _sequence(len(box.low), SAMPLES)
+    with NUMPY.quiet():
+        found = scene.at(list(q.T), [np.zeros(SAMPLES)] * len(scene.multipliers), NUMPY)
+    sizes = np.abs(_stack([v for row in found.slopes for v in row], SAMPLES)).max(axis=1)
+    kept = sizes[np.isfinite(sizes)]
+    return float(np.median(kept)) if kept.size else 0.0
 
 
 def _stack(values: Sequence[Any], count: int) -> Array:

@@ -40,10 +40,13 @@ def second_variation(root: Root, size: int) -> tuple[list[Any], int]:
     return sorted(ctx.eigsy((projected + projected.T) / 2, eigvals_only=True)), rank
 
 
-def stability(scene: Scene, root: Root, conservative: bool) -> Stability:
-    """Whether the equilibrium is stable, as far as the energy tells."""
+def stability(scene: Scene, root: Root, conservative: bool, typical: float) -> Stability:
+    """Whether the equilibrium is stable, as far as the energy tells.
+
+    typical: the size of second derivatives elsewhere, beside which those at the root may vanish.
+    """
     values, rank = second_variation(root, len(scene.coordinates))
-    zero = ZERO * max(abs(v) for row in root.numbers.slopes for v in row)
+    zero = ZERO * max(typical, *(abs(v) for row in root.numbers.slopes for v in row))
     shown = tuple(0.0 if abs(v) <= zero else float(v) for v in values)
     reason = _no_energy(scene, root, conservative or len(values) == 1, rank)
     if reason:

@@ -10,7 +10,7 @@ import sympy as sp
 from eomgen.algebra.scalar import Algebra, S
 from eomgen.errors import UsageError
 from eomgen.mechanics.vectors import dot
-from eomgen.model import Model, Speed
+from eomgen.model import TIME, Model, Speed
 
 
 def symbols(model: Model) -> tuple[sp.Symbol, ...]:
@@ -21,6 +21,18 @@ def symbols(model: Model) -> tuple[sp.Symbol, ...]:
 def names(model: Model) -> tuple[str, ...]:
     """The names of the equations: speeds, or the coordinates where the spec declares none."""
     return tuple(s.name for s in model.speeds) or tuple(c.name for c in model.coordinates)
+
+
+def spelled_out(model: Model, formula: sp.Expr) -> sp.Expr:
+    """A formula with derived parameters and prescribed motions replaced by what they stand for."""
+    definitions = {p.symbol: p.formula for p in model.parameters if p.formula is not None}
+    for known in model.prescribed:
+        rate = sp.diff(known.formula, TIME)
+        definitions |= {known.symbol: known.formula, known.rate: rate}
+        definitions[known.acceleration] = sp.diff(rate, TIME)
+    while formula.free_symbols & definitions.keys():
+        formula = formula.xreplace(definitions)
+    return formula
 
 
 def rates(model: Model, algebra: Algebra[S]) -> tuple[S, ...]:

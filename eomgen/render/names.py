@@ -35,5 +35,5 @@ def prefix(name: str) -> str:
 
 
 def module(name: str) -> str:
-    """The name of a program's Python module."""
-    return escaped([name], keyword.kwlist)[0]
+    """The name of a program's Python module; one that it imports itself would hide that."""
+    return escaped([name], [*keyword.kwlist, "numpy"])[0]

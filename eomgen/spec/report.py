@@ -78,11 +78,11 @@ def _command(fault: Fault) -> str:
         "col": str(fault.location.column),
         "title": fault.code,
     }
-    listed = ",".join(f"{key}={_escaped(value, ':,')}" for key, value in properties.items())
-    return f"::error {listed}::{_escaped(fault.message + hint)}"
+    listed = ",".join(f"{key}={escaped(value, ':,')}" for key, value in properties.items())
+    return f"::error {listed}::{escaped(fault.message + hint)}"
 
 
-def _escaped(text: str, also: str = "") -> str:
+def escaped(text: str, also: str = "") -> str:
     """Percent-encoding of what would end a command or a property."""
     return "".join(f"%{ord(c):02X}" if c in "%\r\n" + also else c for c in text)
 
