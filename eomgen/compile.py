@@ -27,7 +27,7 @@ from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.vectors import dot
 from eomgen.model import TIME as TIME_SYMBOL
 from eomgen.model import Coordinate, Description, Model, Prescribed, Speed
-from eomgen.program import Function, Program, Variable
+from eomgen.program import Function, Program, Read, Variable
 from eomgen.spec.units import si_unit
 
 LARGEST_UNROLLED = 12  # equations; above, L D L' runs in a loop
@@ -45,6 +45,12 @@ class Machine:
     def model(self) -> Model:
         """The scene."""
         return self.kinematics.model
+
+    @cached_property
+    def leaves(self) -> tuple[Node, ...]:
+        """The arguments of the program, as nodes."""
+        bound = self.kinematics.algebra.bindings.values()
+        return tuple(node for node in dict.fromkeys(bound) if isinstance(node.datum, Read))
 
     @cached_property
     def equations(self) -> Equations[Node]:

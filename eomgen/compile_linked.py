@@ -8,6 +8,7 @@ from eomgen.algebra.assemble import assemble
 from eomgen.algebra.graph import Node
 from eomgen.compile import Machine
 from eomgen.mechanics import multipliers
+from eomgen.model import Model
 from eomgen.program import Function
 
 
@@ -65,8 +66,23 @@ FUNCTIONS: dict[str, Build] = {
     "project_positions": _project_positions,
     "project_rates": _project_rates,
 }
+OVER_POSITIONS = ("project_positions",)  # these read no rates: they serve every state that has q
+OVER_OWN_RATES = ("constraint_residuals", "constraint_rates", "constraint_jacobian")
 
 
 def functions(m: Machine, names: Sequence[str] = tuple(FUNCTIONS)) -> tuple[Function, ...]:
     """The functions of a linked scene with independent rows."""
     return tuple(FUNCTIONS[name](m) for name in names)
+
+
+def dependent_functions(m: Machine, model: Model) -> tuple[Function, ...]:
+    """All coordinates and their rates over the independent ones, of a minimal formulation."""
+    bindings = m.kinematics.algebra.bindings
+    size = (len(model.coordinates),)
+    places = [bindings[c.symbol] for c in model.coordinates]
+    rates = [bindings[c.rate] for c in model.coordinates]
+    about = "all coordinates of the spec over the independent ones"
+    return (
+        assemble("all_coordinates", about, size, places),
+        assemble("all_rates", f"rates of {about}", size, rates),
+    )

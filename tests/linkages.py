@@ -102,3 +102,27 @@ def four_bar(crank, coupler, rocker, ground, **known):
 
 def degrees(value):
     return value * sp.pi / 180
+
+
+def bricard():
+    """Six revolute joints in a closed ring of unit links with twists of +-90 degrees.
+
+    Bricard's trihedral mechanism in Denavit-Hartenberg angles: 6 coordinates and 6 rows (three of
+    position, three of orientation), of which only 5 are independent; one degree of freedom.
+    """
+    angles = [symbol(f"q{i}") for i in range(1, 7)]
+    links = [_link(q, 1 if i % 2 == 0 else -1) for i, q in enumerate(angles)]
+    # half of the ring from either side:  T1 T2 T3 = (T4 T5 T6)^-1
+    left, right = links[0] * links[1] * links[2], links[3] * links[4] * links[5]
+    turn, shift = right[:3, :3].T, -right[:3, :3].T * right[:3, 3]
+    back = turn.row_join(shift)
+    entries = [(0, 3), (1, 3), (2, 3), (0, 1), (0, 2), (1, 2)]
+    rows = {f"c{k}": (HOLONOMIC, left[i] - back[i]) for k, i in enumerate(entries, 1)}
+    guess = {f"q{i}": sp.pi / 2 * (1 if i % 2 else -1) for i in range(1, 7)}
+    return machine(" ".join(str(q) for q in angles), rows, free="q1", guess=guess)
+
+
+def _link(angle, twist):
+    """Rz(angle) Tx(1) Rx(twist * 90 deg)."""
+    c, s = sp.cos(angle), sp.sin(angle)
+    return sp.Matrix([[c, 0, s * twist, c], [s, 0, -c * twist, s], [0, twist, 0, 0], [0, 0, 0, 1]])

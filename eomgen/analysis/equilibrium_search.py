@@ -71,8 +71,8 @@ def search(scene: Scene, box: Box, free: Sequence[int], starts: int = STARTS) ->
     for _ in range(ITERATIONS):
         q, multipliers = unknown.step(q, multipliers)
     residual = unknown.residual(q, multipliers)
-    small = np.isfinite(residual) & (np.abs(residual) <= ACCEPTED * scale)
-    good = np.all(small, axis=1)
+    small: Any = np.isfinite(residual) & (np.abs(residual) <= ACCEPTED * scale)
+    good: Any = small.all(axis=1)
     hits = _merged(box, q, multipliers, good)
     return Search(tuple(hits), starts, int(starts - good.sum()))
 
@@ -188,14 +188,14 @@ def _columns(values: Array) -> Array:
     return np.array([_typical(values[:, [k]]) for k in range(values.shape[1])])
 
 
-def _solved(matrix: Array, right: Array) -> Array:
+def _solved(matrix: Any, right: Any) -> Array:
     """The least squares solution at every point; zero where the numbers are not finite."""
+    fine = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
+    matrix = np.where(fine[:, None, None], matrix, 0.0)
+    right = np.where(fine[:, None], right, 0.0)
     size = np.max(np.abs(matrix), axis=2, initial=0.0)
     size = np.where(size > 0, size, 1.0)
     scaled, load = matrix / size[:, :, None], right / size
-    fine = np.isfinite(scaled).all(axis=(1, 2)) & np.isfinite(load).all(axis=1)
-    scaled = np.where(fine[:, None, None], scaled, 0.0)
-    load = np.where(fine[:, None], load, 0.0)
     result: Array = (np.linalg.pinv(scaled, rcond=1e-11) @ load[:, :, None])[:, :, 0]
     return result
 

@@ -6,7 +6,7 @@ The rows are linear in the rates q' whatever speeds the scene declares:  J(q, t)
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -133,15 +133,14 @@ def values(
     nodes: Iterable[Node],
     state: State,
     arithmetic: Arithmetic,
-    more: Mapping[Node, Any] | None = None,
 ) -> list[Any]:
-    """The values of nodes at a state; `more` gives those of further leaves."""
+    """The values of nodes at a state."""
     leaves = {
         leaf: arithmetic.number(state.read(leaf.datum))
         for leaf in linkage.leaves
         if leaf.datum.argument != "inputs"
     }
-    return evaluate(nodes, leaves | dict(more or {}), arithmetic)
+    return evaluate(nodes, leaves, arithmetic)
 
 
 def matrix(

@@ -24,6 +24,7 @@ MOST_STEPS = 100
 MOST_POLISHING = 250  # linear convergence, where J loses rank, gains one bit a step
 CUT = 1e-11  # singular values below this share of the largest are zero
 FLOAT_TOLERANCE = 1e-10
+ROUND_OFF = 1e-15
 TOLERANCE = PRECISE.number(10) ** -44
 SHORTEST = 2.0**-20  # of the line search
 LENGTH = 1e-3  # a coordinate at zero still has a size
@@ -53,22 +54,28 @@ def close(problem: Problem, start: Sequence[Any], movable: Sequence[int]) -> Out
 
 
 def roughly(problem: Problem, start: Sequence[Any]) -> Floats | None:
-    """A zero of the residuals in doubles, moving everything; None where none is found."""
+    """A zero of the residuals in doubles, moving everything; None where none is found.
+
+    The search goes on to round-off: where the zero is a double one it gains one bit a step.
+    """
     try:
-        x = _descend(problem, np.array([float(v) for v in start]), list(range(len(start))))
+        everything = list(range(len(start)))
+        x = _descend(problem, np.array([float(v) for v in start]), everything, ROUND_OFF)
         return x if x is not None and _is_closed(*_floats(problem, x), x, FLOAT_TOLERANCE) else None
     except (np.linalg.LinAlgError, *IRREGULAR):
         return None
 
 
-def _descend(problem: Problem, x: Floats, movable: list[int]) -> Floats | None:
+def _descend(
+    problem: Problem, x: Floats, movable: list[int], tolerance: float = FLOAT_TOLERANCE
+) -> Floats | None:
     """The last point of a damped Gauss-Newton search; None where nothing is defined."""
     try:
         residual, slope = _floats(problem, x)
     except IRREGULAR:
         return None
     for _ in range(MOST_STEPS):
-        if _is_closed(residual, slope, x, FLOAT_TOLERANCE) or not movable:
+        if _is_closed(residual, slope, x, tolerance) or not movable:
             break
         step = np.zeros_like(x)
         step[movable] = -np.linalg.pinv(slope[:, movable], rcond=CUT) @ residual

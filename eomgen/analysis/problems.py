@@ -7,8 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from eomgen.algebra.arithmetic import Arithmetic
-from eomgen.analysis import linkage as linkages
-from eomgen.analysis import newton
+from eomgen.analysis import newton, sweep
 from eomgen.analysis.linkage import Linkage, State
 
 
@@ -18,9 +17,11 @@ def position_problem(linkage: Linkage, state: State) -> newton.Problem:
     nodes = [*(r.residual for r in rows if r.residual is not None)]
     nodes += [entry for row in rows for entry in row.jacobian]
 
+    evaluate = sweep.of(nodes).at
+
     def problem(x: Sequence[Any], arithmetic: Arithmetic) -> newton.Rows:
         at = replace(state, coordinates=tuple(x))
-        return _split(linkages.values(linkage, nodes, at, arithmetic), len(rows), len(x))
+        return _split(evaluate(at, arithmetic), len(rows), len(x))
 
     return problem
 
@@ -30,10 +31,11 @@ def rate_problem(linkage: Linkage, state: State) -> newton.Problem:
     nodes = [r.rate for r in linkage.rows]
     nodes += [entry for row in linkage.rows for entry in row.jacobian]
 
+    evaluate = sweep.of(nodes).at
+
     def problem(x: Sequence[Any], arithmetic: Arithmetic) -> newton.Rows:
         at = replace(state, rates=tuple(x))
-        found = linkages.values(linkage, nodes, at, arithmetic)
-        return _split(found, len(linkage.rows), len(x))
+        return _split(evaluate(at, arithmetic), len(linkage.rows), len(x))
 
     return problem
 
