@@ -61,6 +61,8 @@ def choose(scene: Linked, wanted: str = "auto") -> Formulation:
     """
     if wanted != "auto":
         return MAKERS[wanted](scene)
+    if not scene.machine.kept:
+        return replace(MAKERS["multiplier"](scene), why="no constraint is bilateral")
     if scene.asks_reactions:
         return replace(MAKERS["multiplier"](scene), why="reactions are asked for")
     for name in ("minimal", "nullspace"):
@@ -86,7 +88,13 @@ def _multiplier(scene: Linked) -> Formulation:
     return Formulation("multiplier", "it was asked for", scene.machine)
 
 
+def _refuse_free(scene: Linked, name: str) -> None:
+    if not scene.machine.kept:
+        raise UsageError(f"{name}: no bilateral constraint reduces this scene; use multiplier")
+
+
 def _nullspace(scene: Linked) -> Formulation:
+    _refuse_free(scene, "nullspace")
     if scene.report.freedom.singularities:
         raise UsageError("nullspace: the constraints lose rank inside `range`; use multiplier")
     basis = scene.report.freedom.basis
@@ -110,6 +118,7 @@ def _arguments(
 
 
 def _minimal(scene: Linked) -> Formulation:
+    _refuse_free(scene, "minimal")
     if any(c.kind == "nonholonomic" for c in scene.model.constraints):
         raise UsageError("minimal: a nonholonomic constraint eliminates no coordinate")
     found = _eliminations(scene)

@@ -75,7 +75,7 @@ Extra = Callable[[Linked, Formulation], tuple[Function, ...]]
 
 
 def _with_multipliers(scene: Linked, chosen: Formulation) -> tuple[Function, ...]:
-    return compile_linked.functions(scene.machine)
+    return compile_linked.functions(scene.machine) if scene.machine.kept else ()
 
 
 def _with_rates(scene: Linked, chosen: Formulation) -> tuple[Function, ...]:

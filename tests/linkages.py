@@ -126,3 +126,43 @@ def _link(angle, twist):
     """Rz(angle) Tx(1) Rx(twist * 90 deg)."""
     c, s = sp.cos(angle), sp.sin(angle)
     return sp.Matrix([[c, 0, s * twist, c], [s, 0, -c * twist, s], [0, twist, 0, 0], [0, 0, 0, 1]])
+
+
+# consistent positions of Andrews' squeezer mechanism (Bari test set for initial value problems)
+SQUEEZER = {
+    "beta": "-0.0617138900142764496358948458001",
+    "Theta": "0",
+    "gamma": "0.455279819163070380255912382449",
+    "Phi": "0.222668390165885884674473185609",
+    "delta": "0.487364979543842550225598953530",
+    "Omega": "-0.222668390165885884674473185609",
+    "epsilon": "1.23054744454982119249735015568",
+}
+
+
+def squeezer():
+    """Andrews' squeezer mechanism: seven bodies in three loops, lengths of millimetres."""
+    beta, big, gamma, tilt, delta, swing, epsilon = (symbol(n) for n in SQUEEZER)
+    end = (
+        R(7, 1000) * sp.cos(beta) - R(28, 1000) * sp.cos(beta + big),
+        R(7, 1000) * sp.sin(beta) - R(28, 1000) * sp.sin(beta + big),
+    )
+    fixed = (R(-6934, 100000), R(-227, 100000))
+    loops = (
+        (
+            end[0] - R(35, 1000) * sp.sin(gamma) + R(3635, 100000),
+            end[1] + R(35, 1000) * sp.cos(gamma) - R(3273, 100000),
+        ),
+        (
+            end[0] - R(2, 100) * sp.sin(tilt + delta) - R(4, 100) * sp.cos(delta) - fixed[0],
+            end[1] + R(2, 100) * sp.cos(tilt + delta) - R(4, 100) * sp.sin(delta) - fixed[1],
+        ),
+        (
+            end[0] - R(2, 100) * sp.cos(swing + epsilon) - R(4, 100) * sp.sin(epsilon) - fixed[0],
+            end[1] - R(2, 100) * sp.sin(swing + epsilon) + R(4, 100) * sp.cos(epsilon) - fixed[1],
+        ),
+    )
+    guess = {n: sp.Rational(v).limit_denominator(20) for n, v in SQUEEZER.items() if n != "Theta"}
+    rows = {f"loop{i}": (HOLONOMIC, *loop) for i, loop in enumerate(loops, 1)}
+    known = {"initial": {"Theta": sp.Integer(0)}, "guess": guess}
+    return machine(" ".join(SQUEEZER), rows, free="Theta", **known)

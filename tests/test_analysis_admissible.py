@@ -7,6 +7,7 @@ from linkages import (
     HOLONOMIC,
     LECTURE,
     RATES,
+    SQUEEZER,
     TIME,
     R,
     degrees,
@@ -18,6 +19,7 @@ from linkages import (
     radius,
     rolling,
     sphere,
+    squeezer,
     symbol,
     x,
     y,
@@ -237,3 +239,9 @@ def test_the_rolling_disc_moves_along_its_heading() -> None:
     )
     rates = admissible.positions(scene).state.rates
     assert [float(v) for v in rates] == pytest.approx([1.0, 3**0.5, 1.0, 4.0], abs=1e-15)
+
+
+def test_the_squeezer_closes_at_the_published_angles() -> None:
+    found = admissible.positions(squeezer()).state.coordinates
+    for value, published in zip(found, SQUEEZER.values(), strict=True):
+        assert abs(value - PRECISE.number(published)) < 1e-15

@@ -155,6 +155,17 @@ def test_what_cannot_be_integrated(coordinates, rate, growth) -> None:
     assert verdict.hidden is None
 
 
+@pytest.mark.parametrize(("spins", "growth"), [(True, (3, 5)), (False, (2, 3, 5))])
+def test_the_rolling_ball(spins, growth) -> None:
+    """Euler angles psi, theta, phi about z, x, z; without spin: Cartan's (2, 3, 5)."""
+    across = dtheta * sp.cos(psi) + dphi * sp.sin(theta) * sp.sin(psi)
+    along = dtheta * sp.sin(psi) - dphi * sp.sin(theta) * sp.cos(psi)
+    rows = [dx - radius * along, dy + radius * across]
+    rows += [] if spins else [dpsi + dphi * sp.cos(theta)]
+    found = one("x y psi theta phi", *rows)
+    assert (found.growth, found.hidden) == (growth, 0)
+
+
 def test_growth_that_takes_several_brackets() -> None:
     """Engel's distribution: z' = y x', y' = theta x'."""
     assert one("x y z theta", dz - y * dx, dy - theta * dx).growth == (2, 3, 4)

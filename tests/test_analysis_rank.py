@@ -10,6 +10,7 @@ from linkages import (
     LECTURE,
     RATES,
     R,
+    bricard,
     degrees,
     dphi,
     dx,
@@ -19,6 +20,7 @@ from linkages import (
     machine,
     radius,
     rolling,
+    squeezer,
     x,
     y,
     z,
@@ -209,3 +211,17 @@ def test_solved_is_a_solution() -> None:
 def test_rolling_leaves_heading_and_spin() -> None:
     scene = machine("x y theta phi", {"r": (RATES, *rolling)}, {"R": 1}, free="theta phi")
     assert rank.freedom(scene).basis.independent == ("theta", "phi")
+
+
+def test_bricards_mechanism_moves_because_a_row_is_redundant() -> None:
+    found = rank.freedom(bricard())
+    assert (found.coordinates, len(found.rows), found.rank) == (6, 6, 5)
+    assert found.degrees_of_freedom == 1
+    assert found.dropped == ("c6",)
+    assert found.warnings[0].startswith("W-RANK: constraint c6 depends on c1, ")
+
+
+def test_the_squeezer_has_one_degree_of_freedom() -> None:
+    found = rank.freedom(squeezer())
+    assert (found.rank, found.degrees_of_freedom, found.dropped) == (6, 1, ())
+    assert found.basis.independent == ("Theta",)

@@ -26,7 +26,7 @@ from eomgen.errors import CheckError
 from eomgen.model import Model
 
 LARGEST_SYSTEM = 64  # product of degrees up to which elimination is tried
-MOST_VARIABLES = 12
+MOST_EQUATIONS = 12  # of that system
 FAMILY = 8  # more singular roots than this are members of a family
 SHOWN_OF_FAMILY = 3
 SAME = 1e-18  # roots nearer than this share of the region are one
@@ -95,8 +95,7 @@ def _eliminated(problem: Problem) -> Found:
     """By exact elimination."""
     unknowns = [problem.model.coordinates[k].symbol for k in problem.free]
     system = polynomials.system(problem.forms, [*unknowns, *problem.multipliers])
-    variables = len(system.lengths) + 2 * len(system.angles) + len(system.roots)
-    if variables > MOST_VARIABLES or polynomials.bezout(system) > LARGEST_SYSTEM:
+    if len(system.polynomials) > MOST_EQUATIONS or polynomials.bezout(system) > LARGEST_SYSTEM:
         raise elimination.TooMany
     if not system.polynomials:
         return _anywhere(problem)
@@ -105,21 +104,20 @@ def _eliminated(problem: Problem) -> Found:
     roots = _kept(problem, points)
     return Found(
         roots=roots,
-        method=_exactly(system, solutions, len(points) - len(roots)),
+        method=_exactly(system, solutions.complex_count, len(points), len(points) - len(roots)),
         complete=True,
         isolated=not problem.arbitrary,
         arbitrary=problem.arbitrary,
     )
 
 
-def _exactly(system: polynomials.System, solutions: elimination.Solutions, outside: int) -> str:
+def _exactly(system: polynomials.System, every: int, real: int, outside: int) -> str:
     """What exact elimination has proven."""
     said = "exact elimination: "
-    if not solutions.complex_count:
+    if not every:
         said += "the equations contradict each other, so there is no equilibrium"
     else:
-        real, every = len(solutions.real), solutions.complex_count
-        said += f"all {every} complex solutions, {real} of them real"
+        said += f"of {every} complex solutions {real} are equilibria"
     if outside:
         said += f", {outside} of these outside the range"
     if not system.is_exact:
@@ -144,7 +142,7 @@ def _start(problem: Problem) -> list[Any]:
 def _points(
     problem: Problem, system: polynomials.System, solutions: elimination.Solutions
 ) -> list[Root]:
-    """Real solutions at which every formula has its value, each checked on the graph."""
+    """Real solutions with the right sign of every root, each checked on the graph."""
     ctx = polish.context()
     points = []
     for values in solutions.real:
@@ -154,9 +152,6 @@ def _points(
         for k in problem.free:
             q[k] = _value(system, problem.model.coordinates[k].symbol, values)
         loads = [_value(system, m, values) for m in problem.multipliers]
-        numbers = polish.numbers_at(problem.scene, q, loads)
-        if numbers is None:
-            continue  # a denominator that was multiplied away vanishes
         point = polish.checked(problem.scene, q, loads, problem.free)
         if point is None:
             raise CheckError(

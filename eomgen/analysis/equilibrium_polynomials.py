@@ -1,6 +1,7 @@
 """Equilibrium equations as polynomials with rational coefficients, where they are any.
 
-An angle q becomes the pair (c, s) with c^2 + s^2 = 1, a root r = sqrt(p) a variable with r^2 = p.
+An angle q becomes the pair (c, s) with c^2 + s^2 = 1, a root r = sqrt(p) a variable with r^2 = p,
+a denominator d a variable w with w d = 1 (so that d = 0 is no solution).
 """
 
 from __future__ import annotations
@@ -100,70 +101,66 @@ def system(forms: Sequence[Form], unknowns: Sequence[sp.Symbol]) -> System:
         NotPolynomial: says which unknown hinders it.
     """
     seen = usage(forms)
-    cleared = [_cleared(f) for f in forms]
     angles = [u for u in unknowns if u in seen.factors]
     for unknown in unknowns:
         mixed = unknown in seen.factors and not seen.is_periodic(unknown)
         if mixed or unknown in seen.tangled:
             raise NotPolynomial(f"{unknown.name} stands inside and outside of sine and cosine")
     lengths = [u for u in unknowns if u not in angles]
-    kernels = _kernels(cleared, set(unknowns))
+    roots, divisors = _special(forms)
     names = [u.name for u in lengths]
     names += [f"{letter} {u.name}" for u in angles for letter in ("cos", "sin")]
-    names += [f"root {i}" for i, _ in enumerate(kernels)]
+    names += [f"root {i}" for i, _ in enumerate(roots)]
+    names += [f"inverse {i}" for i, _ in enumerate(divisors)]
     polynomials, *variables = ring(names, sp.QQ, grevlex)
-    place = {u: i for i, u in enumerate(lengths)}
     pairs = {u: (len(lengths) + 2 * i, len(lengths) + 2 * i + 1) for i, u in enumerate(angles)}
-    first = len(lengths) + 2 * len(angles)
-    roots = {kernel: first + i for i, kernel in enumerate(kernels)}
-    writer = _Writer(polynomials, variables, {**place, **roots}, pairs)
-    found = [writer.of(f) for f in cleared]
+    count = len(lengths) + 2 * len(angles)
+    places = {what: i for i, what in enumerate(lengths)}
+    places |= {what: count + i for i, what in enumerate(roots)}
+    inverses = {what: count + len(roots) + i for i, what in enumerate(divisors)}
+    writer = _Writer(polynomials, variables, places, inverses, pairs)
+    found = [writer.of(f) for f in forms]
     found += [variables[c] ** 2 + variables[s] ** 2 - 1 for c, s in pairs.values()]
-    found += [variables[i] ** 2 - writer.of(k.arguments[0]) for k, i in roots.items()]
-    kept = tuple(p for p in found if p)
-    return System(kept, place, pairs, tuple(roots.values()), writer.is_exact)
+    found += [variables[places[k]] ** 2 - writer.of(k.arguments[0]) for k in roots]
+    found += [variables[i] * writer.divisor(what) - 1 for what, i in inverses.items()]
+    return System(
+        polynomials=tuple(p for p in found if p),
+        lengths={u: places[u] for u in lengths},
+        angles=pairs,
+        roots=tuple(places[k] for k in roots),
+        is_exact=writer.is_exact,
+    )
 
 
-def _cleared(form: Form) -> Form:
-    """The form times what it divides by."""
-    while True:
-        negative = sorted({a for m, _, _ in form.terms for a, e in m if e < 0})
-        unknown = [a for a in negative if not _is_constant(form, a)]
-        if not unknown:
-            return form
-        form = _without(form, unknown[-1])
+def _is_constant(ring: normal.Ring, what: normal.Atom) -> bool:
+    return not symbols_of(normal.of_atom(ring, what))
 
 
-def _is_constant(form: Form, atom: int) -> bool:
-    return not symbols_of(normal.of_atom(form.ring, form.ring.atoms[atom]))
-
-
-def _without(form: Form, atom: int) -> Form:
-    """The form times a power of the atom, so that none is negative."""
-    what = form.ring.atoms[atom]
-    if isinstance(what, Kernel):
-        if what.function != "base" and atom not in form.ring.squares:
-            raise NotPolynomial(f"the function {what.function} is no polynomial")
-        return normal.cleared(form, atom)
-    lowest = min(dict(m).get(atom, 0) for m, _, _ in form.terms)
-    return form * normal.of_atom(form.ring, what, -lowest)
-
-
-def _kernels(forms: Sequence[Form], unknowns: set[sp.Symbol]) -> list[Kernel]:
-    """The roots that hold unknowns, in the order in which they are first seen."""
-    found: dict[Kernel, None] = {}
+def _special(forms: Sequence[Form]) -> tuple[list[Kernel], list[Any]]:
+    """(roots, atoms that divide), of those that hold unknowns, in the order of their sight."""
+    roots: dict[Kernel, None] = {}
+    divisors: dict[Any, None] = {}
     waiting = [*forms]
     while waiting:
         form = waiting.pop(0)
-        for atom in sorted({a for m, _, _ in form.terms for a, _ in m}):
+        for atom, exponent in (power for m, _, _ in form.terms for power in m):
             what = form.ring.atoms[atom]
-            if not isinstance(what, Kernel) or _is_constant(form, atom) or what in found:
+            if _is_constant(form.ring, what):
                 continue
-            if what.function != "sqrt":
-                raise NotPolynomial(f"the function {what.function} is no polynomial")
-            found[what] = None
-            waiting.append(what.arguments[0])
-    return list(found)
+            fresh = what not in roots and what not in divisors
+            if exponent < 0:
+                divisors[what] = None
+            if isinstance(what, Kernel) and what.function == "sqrt":
+                roots[what] = None
+            if isinstance(what, Kernel) and fresh:
+                _look_into(what)
+                waiting.append(what.arguments[0])
+    return list(roots), list(divisors)
+
+
+def _look_into(kernel: Kernel) -> None:
+    if kernel.function not in ("sqrt", "base"):
+        raise NotPolynomial(f"the function {kernel.function} is no polynomial")
 
 
 @dataclass
@@ -173,6 +170,7 @@ class _Writer:
     polynomials: Any
     variables: Sequence[PolyElement]
     places: Mapping[Any, int]
+    inverses: Mapping[Any, int]
     pairs: Mapping[sp.Symbol, tuple[int, int]]
     is_exact: bool = True
 
@@ -188,11 +186,17 @@ class _Writer:
 
     def _power(self, form: Form, atom: int, exponent: int) -> PolyElement:
         what = form.ring.atoms[atom]
+        if exponent < 0 and what in self.inverses:
+            return self.variables[self.inverses[what]] ** -exponent
         if what in self.places:
-            if exponent < 0:
-                raise NotPolynomial("a root of lengths divides")
             return self.variables[self.places[what]] ** exponent
         return self.polynomials.one * self._rounded(normal.of_atom(form.ring, what, exponent))
+
+    def divisor(self, what: Any) -> PolyElement:
+        """The polynomial of an atom that divides."""
+        if isinstance(what, Kernel) and what.function == "base":
+            return self.of(what.arguments[0])
+        return self.variables[self.places[what]]
 
     def _rounded(self, form: Form) -> Any:
         """The value of a constant, rounded to a rational number."""
