@@ -53,6 +53,15 @@ templates_option = click.option(
 )
 
 
+formulation_option = click.option(
+    "--formulation",
+    type=click.Choice(["auto", "minimal", "nullspace", "multiplier"]),
+    default="auto",
+    show_default=True,
+    help="Equations of a scene with constraints.",
+)
+
+
 @click.group(context_settings=SETTINGS, epilog=EXAMPLES)
 @click.version_option(__version__, prog_name="eomgen")
 def commands() -> None:
@@ -64,13 +73,14 @@ def commands() -> None:
 @click.option("--steps", is_flag=True, help="Show every partial derivative.")
 @language_option
 @templates_option
+@formulation_option
 @format_option
-def derive(spec: str, steps: bool, language: str, templates: Path | None, format_: str) -> None:
+def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
     """Show the equations of motion of SPEC in the terminal."""
     from eomgen.outputs import Wish, rendered
 
-    wish = Wish(("text",), language, templates, steps)
-    (text,) = rendered(_study(spec, format_), wish).values()
+    wish = Wish(("text",), wishes["language"], wishes["templates"], wishes["steps"])
+    (text,) = rendered(_study(spec, format_, formulation), wish).values()
     click.echo(text, nl=False)
 
 
@@ -96,6 +106,7 @@ def derive(spec: str, steps: bool, language: str, templates: Path | None, format
 @click.option("--force", is_flag=True, help="Overwrite files that eomgen did not make.")
 @language_option
 @templates_option
+@formulation_option
 @format_option
 def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -> None:
     """Write lecture notes, C and Python for SPEC."""
@@ -103,7 +114,7 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
 
     targets = wishes["targets"] or ("latex", "c", "python")
     wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"])
-    made = rendered(_study(spec, format_), wish)
+    made = rendered(_study(spec, format_, wishes["formulation"]), wish)
     if output == files.STANDARD:
         _print_files(made)
         return
@@ -149,25 +160,23 @@ def check(specs: tuple[str, ...], format_: str) -> None:
     show_default=True,
     help="What computes.",
 )
+@click.option("--project", is_flag=True, help="Move states to the nearest admissible ones.")
 @format_option
-def evaluate(spec: str, state: str | None, digits: int, using: str, format_: str) -> None:
+def evaluate(spec: str, state: str | None, format_: str, **wishes: Any) -> None:
     """Compute accelerations, energies, forces and outputs of SPEC at given states, as JSON.
 
     Without --state the spec's initial values are the state.
     """
     import json
 
-    from eomgen import states
-    from eomgen.evaluate import depends_on_time
-    from eomgen.evaluate import evaluate as values
+    from eomgen.answers import Question, answers
 
     if spec == state == files.STANDARD:
         raise UsageError("the spec and the state cannot both come from standard input")
     study = _study(spec, format_)
     with _reporting(format_, files.shown(spec if state is None else state)):
         text = "{}" if state is None else _decoded(state)
-        found = states.read(text, study.model, needs_time=depends_on_time(study.program))
-        results = values(study.machine, study.program, found, using, digits)
+        results = answers(study, text, Question(**wishes))
     click.echo(json.dumps(results, indent=2, ensure_ascii=False))
 
 
@@ -238,10 +247,10 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
         click.echo(str(path))
 
 
-def _study(spec: str, format_: str) -> Study:
+def _study(spec: str, format_: str, formulation: str = "auto") -> Study:
     """The study of a spec; its faults are shown as asked and end the command."""
     with _reporting(format_, files.shown(spec)):
-        return _derived(spec)
+        return _derived(spec, formulation)
 
 
 @contextmanager
@@ -254,11 +263,11 @@ def _reporting(format_: str, source: str) -> Iterator[None]:
         sys.exit(error.exit_code)
 
 
-def _derived(spec: str) -> Study:
+def _derived(spec: str, formulation: str = "auto") -> Study:
     text = files.read(spec)
     from eomgen import study
 
-    return study.of_text(text, files.shown(spec))
+    return study.of_text(text, files.shown(spec), formulation)
 
 
 def _complain(error: EomgenError, format_: str, source: str, *, err: bool = True) -> None:

@@ -45,8 +45,6 @@ def functions(m: Machine) -> tuple[Function, ...]:
         UsageError: friction has no point to act on, or there are too many contacts.
     """
     scene = Touching(m)
-    if not scene.contacts:
-        return ()
     return (*_gaps(scene), *_contact_forces(scene), *_impacts(scene), *_motions(scene))
 
 

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from eomgen import compile
+from eomgen import compile, study_linked
 from eomgen.checks import agreement, dimensions, expectations, power, samples
 from eomgen.mechanics import lagrange
 from eomgen.mechanics.equations import Derivation
 from eomgen.model import Model
 from eomgen.program import Program
 from eomgen.spec import read
+from eomgen.study_linked import LinkedStudy
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,7 @@ class Report:
     terms: int  # whose dimension was checked; 0 where the spec states no units
     claims: int  # of the author, all found to hold
     projected: bool  # bodies were projected; else both routes start from the author's energies
+    formulations: tuple[str, ...] = ()  # of a linked scene, found to agree
 
 
 @dataclass(frozen=True)
@@ -38,25 +40,49 @@ class Study:
     machine: compile.Machine
     program: Program
     report: Report
+    links: LinkedStudy | None = None  # where the scene has constraints
+
+    @property
+    def freedom(self) -> int:
+        """The degrees of freedom."""
+        if self.links is None:
+            return len(self.model.coordinates)
+        return self.links.scene.report.freedom.degrees_of_freedom
 
 
-def of_text(text: str | bytes, file: str) -> Study:
-    """The study of a spec.
+def of_text(text: str | bytes, file: str, formulation: str = "auto") -> Study:
+    """The study of a spec; `formulation` matters where it has constraints.
 
     Raises:
         SpecError: the spec has mistakes, all are listed.
         UsageError: the scene cannot be derived as it is described.
         CheckError: something derived would not be true; nothing may be printed.
     """
-    return of_model(read(text, file))
+    return of_model(read(text, file), formulation)
 
 
-def of_model(model: Model) -> Study:
+def of_model(model: Model, formulation: str = "auto") -> Study:
     """The study of a model; raises as `of_text`."""
+    if model.constraints:
+        return _linked(study_linked.of_model(model, formulation))
     derivation = lagrange.derive(model)
     machine = compile.machine_of(model)
     report = checked(derivation, machine)
     return Study(model, derivation, machine, compile.program(machine), report)
+
+
+def _linked(links: LinkedStudy) -> Study:
+    """The study of a linked scene."""
+    report = Report(
+        agreement=links.agreement,
+        power=links.power,
+        terms=links.terms,
+        claims=links.claims,
+        projected=bool(links.derivation.model.bodies),
+        formulations=links.formulations,
+    )
+    model = links.derivation.model
+    return Study(model, links.derivation, links.machine, links.program(), report, links)
 
 
 def checked(derivation: Derivation, machine: compile.Machine) -> Report:

@@ -251,7 +251,7 @@ def test_a_body_of_full_inertia_turns_about_its_corner(state) -> None:
     assert found.call("events_stick", state) == pytest.approx(expected, rel=1e-11, abs=1e-11)
 
 
-@pytest.mark.parametrize("height", [1, -1])
+@pytest.mark.parametrize("height", [1, -1, -1e20])  # the last: the lowest point
 def test_friction_on_a_sphere_is_in_newtons_whatever_the_unit_of_the_gap(height) -> None:
     """The gap is an area: N = lambda_N 2 R; tangents on both halves of the sphere."""
     found, chance = scene("sphere"), np.random.default_rng(1)

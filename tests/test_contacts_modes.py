@@ -43,6 +43,24 @@ def test_every_subset_of_contacts_is_a_mode_unless_its_forces_are_not_determined
     assert list(found.call(f"events_{mode.name}", [0.5, 0, 1, 0])) == pytest.approx([2.943, 0.5, 0])
 
 
+def test_forces_of_contacts_that_are_closed_together() -> None:
+    """A push of 0.3 g into the corner: the floor bears the weight, the wall the push."""
+    text = CORNER.replace("  right: {unilateral: x <= L}\n", "")
+    found = Scene(text.replace("gravity: [0, -g]", "gravity: [-g/3, -g]"))
+    forces = found.call("contact_forces", [0, 0, 0, 0])
+    assert list(forces) == pytest.approx([0.3 * 9.81, 0.1 * 9.81])
+
+
+def test_a_sticking_contact_does_not_share_a_wall() -> None:
+    """The wall may bear what friction bears, so neither force is determined."""
+    text = CORNER.replace("e: 0.8", "e: 0.8, mu: 0.3").replace("restitution: e", "friction: mu")
+    found = Scene(text.replace("  right: {unilateral: x <= L}\n", ""))
+    touching = compile_contacts.Touching(found.machine)
+    out = contacts_modes.left_out(found.machine, touching.contacts)
+    assert [m.name for m in out] == ["floor_stick_left_contact"]
+    assert len(touching.modes) == 7
+
+
 def test_an_impact_is_only_known_where_restitution_is_given() -> None:
     names = Scene(CORNER).functions
     assert [n for n in names if n.startswith("impact")] == ["impact_floor"]

@@ -50,17 +50,35 @@ bodies: {first: {mass: m, at: "[x, y]"}, second: {mass: m, at: "[u, v]"}}
 constraints: {apart: {unilateral: (x - u)^2 + (y - v)^2 >= (m*g/(m*g))^2, friction: mu}}
 """
 TWO = TWO.replace("g: 9.81 m/s^2", "g: 9.81 m/s^2, d: 1 m").replace("(m*g/(m*g))^2", "d^2")
+ROOT = """space: plane
+gravity: [0, -g]
+parameters: {m: 2 kg, g: 9.81 m/s^2, d: 5 m, mu: 0.5}
+coordinates: {x: m, y: m}
+range: {x: [2*d, 3*d]}
+bodies: {block: {mass: m, at: "[x, y]"}}
+constraints: {hill: {unilateral: y >= sqrt(d*(x - d)), friction: mu}}
+"""
 REFUSED = [
     (DISC, "has no point to act on: 'y >= r' is no function of the place of one particle"),
     (PENDULUM, "may act on slider or bob"),
     (ALONE, "has no direction: slider does not move freely in plane"),
     (TWO, "has no point to act on"),
+    # a place that runs below the disc is not on the disc
+    (DISC.replace("A: ", 'B: "[x, y - r]", A: '), "has no point to act on"),
+    (ROOT.replace("range: {x: [2*d, 3*d]}", ""), "no state was found at which the contacts"),
 ]
 
 
 @pytest.mark.parametrize(("text", "match"), REFUSED)
 def test_friction_without_a_touching_point_is_refused(text, match) -> None:
     refuse(text, match)
+
+
+def test_a_gap_is_looked_at_where_it_is_defined() -> None:
+    """In the declared range; without one, at those of the states that are drawn."""
+    for text in (ROOT, ROOT.replace("range: {x: [2*d, 3*d]}", "").replace("x - d", "x + d/5")):
+        (contact,) = contacts.of(Scene(text).machine)
+        assert contact.touch.point == "block"
 
 
 def test_friction_on_one_of_two_particles_finds_it() -> None:

@@ -110,6 +110,22 @@ bodies:
   two: {mass: m, inertia: J, at: "[0, 0]", angle: b}
 springs: [{along: a - b, stiffness: k}]
 """,
+    "shaken": """
+parameters: {m: 1 kg, k: 50 N/m, c: 8 N*s/m, l: 0.4 m, A: 0.1 m, Omega: 3 rad/s, g: 9.81 m/s^2}
+prescribed: {w: A*sin(Omega*t)}
+coordinates: {x: m}
+points: {W: "[w, 0]", P: "[x, 0]"}
+bodies: {slider: {mass: m, at: P}}
+springs: [{along: x - w, stiffness: k, free_length: l}]
+dampers: [{along: x - w, damping: c}]
+""",
+    "coupled": """
+parameters: {m: 2 kg, M: 1 kg, l: 0.5 m, d: 0.3 m, k: 30 N/m, g: 9.81 m/s^2}
+coordinates: {a: rad, b: rad}
+points: {A: "l*[sin(a), -cos(a)]", B: "[d, 0] + l*[sin(b), -cos(b)]"}
+bodies: {one: {mass: m, at: A}, two: {mass: M, at: B}}
+springs: [{between: [A, B], stiffness: k, free_length: 0 m}]
+""",
     "skate": """
 parameters: {m: 1 kg, J: 0.1 kg*m^2, g: 9.81 m/s^2}
 coordinates: {x: m, y: m, theta: rad}
@@ -300,6 +316,25 @@ def test_two_bar_truss_snaps_through():
     assert len(upright) == 3
     stable = [e for e in result.found if e.stability.verdict == "stable"]
     assert {float(e.coordinates["y"]) for e in stable} == {upright[0], upright[-1]}
+
+
+def test_prescribed_motion_stands_still():
+    result = found("shaken", time=0.3)
+    # the damper between the wall and the slider is at rest
+    assert near(sum(positions(result, "x"), ()), (0.4 + 0.1 * sin(0.9),), 1e-15)
+    assert any("stand" in note for note in result.notes)
+
+
+def test_coupled_pendulums_torque_by_torque():
+    result = found("coupled")
+    assert result.complete
+    assert len(result.found) > 4
+    for a, b in positions(result, "a", "b"):
+        pull = (30 * (0.3 + 0.5 * (sin(b) - sin(a))), 30 * 0.5 * (cos(a) - cos(b)))
+        for angle, mass, sign in ((a, 2, 1), (b, 1, -1)):
+            arm = (0.5 * sin(angle), -0.5 * cos(angle))
+            force = (sign * pull[0], sign * pull[1] - mass * 9.81)
+            assert arm[0] * force[1] - arm[1] * force[0] == pytest.approx(0, abs=1e-12)
 
 
 def test_follower_force_has_no_potential():
