@@ -25,24 +25,9 @@ NEWTON_STEPS = 25
 
 
 def consistent(study: LinkedStudy) -> Model:
-    """The model with its admissible initial state as values for missing entries.
-
-    Only what the spec states or the constraints decide: a coordinate with an initial value or a
-    guess, the rate of a dependent coordinate where the independent rates are stated.
-    """
-    model, report = study.scene.model, study.scene.report
-    stated = model.initial.keys() | model.guess.keys()
-    rates = {c.name: c.rate.name for c in model.coordinates}
-    independent = report.freedom.basis.independent
-    decided = all(rates[name] in stated for name in independent)
-    initial: dict[str, sp.Expr] = {}
-    state = report.initial.state
-    for c, place, rate in zip(model.coordinates, state.coordinates, state.rates, strict=True):
-        if c.name in stated:
-            initial[c.name] = _number(place)
-        if c.rate.name in stated or (decided and c.name not in independent):
-            initial[c.rate.name] = _number(rate)
-    return replace(model, initial=initial)
+    """The model with its admissible initial state as values for missing entries."""
+    initial = {name: _number(value) for name, value in study.scene.decided().items()}
+    return replace(study.scene.model, initial=initial)
 
 
 def _number(value: Any) -> sp.Expr:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from eomgen.algebra.arithmetic import FLOAT
 from eomgen.algebra.closed import ClosedForm, Evaluation
@@ -36,6 +37,26 @@ class Linked:
     def asks_reactions(self) -> bool:
         """Whether the author asks for a constraint force."""
         return any(c.reaction for c in self.model.constraints)
+
+    def decided(self) -> dict[str, Any]:
+        """Initial values in 50 digits that the spec states or the constraints decide.
+
+        A coordinate with an initial value or a guess; the rate of a dependent coordinate where
+        the independent rates are stated.
+        """
+        stated = self.model.initial.keys() | self.model.guess.keys()
+        independent = self.report.freedom.basis.independent
+        rates = {c.name: c.rate.name for c in self.model.coordinates}
+        follows = all(rates[name] in stated for name in independent)
+        state = self.report.initial.state
+        found: dict[str, Any] = {}
+        places = zip(self.model.coordinates, state.coordinates, state.rates, strict=True)
+        for c, place, rate in places:
+            if c.name in stated:
+                found[c.name] = place
+            if c.rate.name in stated or (follows and c.name not in independent):
+                found[c.rate.name] = rate
+        return found
 
 
 @dataclass(frozen=True)

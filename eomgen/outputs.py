@@ -11,6 +11,7 @@ from typing import Any
 
 from eomgen.analysis.cards import to_json
 from eomgen.errors import EomgenError
+from eomgen.output_links import links
 from eomgen.render.notes import Notes
 from eomgen.render.targets import TARGETS, Named, render
 from eomgen.render.templating import environment
@@ -30,7 +31,10 @@ class Wish:
 
 def _notes(study: Study, wish: Wish) -> Named:
     line = check_line(study.report, wish.language)
-    return Notes(study.derivation, wish.language, line, wish.steps)
+    shown = None
+    if study.links is not None:
+        shown = links(study.links.scene.report, study.links.chosen, wish.language)
+    return Notes(study.derivation, wish.language, line, wish.steps, shown)
 
 
 def _program(study: Study, wish: Wish) -> Named:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
+
+import sympy as sp
 
 from eomgen import compile, compile_linked, formulation
 from eomgen.analysis import cards
@@ -13,7 +16,7 @@ from eomgen.formulation import Formulation, Linked
 from eomgen.mechanics import lagrange
 from eomgen.mechanics.equations import Derivation
 from eomgen.model import Model
-from eomgen.program import Function, Program
+from eomgen.program import Function, Program, Variable
 
 
 @dataclass(frozen=True)
@@ -99,4 +102,18 @@ EXTRAS: dict[str, Extra] = {
 def program(scene: Linked, chosen: Formulation) -> Program:
     """The program of a formulation: the standard functions, and those of its constraints."""
     made = compile.program(chosen.machine)
-    return replace(made, functions=made.functions + EXTRAS[chosen.name](scene, chosen))
+    values = scene.decided()
+    return replace(
+        made,
+        coordinates=_initialised(made.coordinates, values),
+        speeds=_initialised(made.speeds, values),
+        functions=made.functions + EXTRAS[chosen.name](scene, chosen),
+    )
+
+
+def _initialised(variables: tuple[Variable, ...], values: dict[str, Any]) -> tuple[Variable, ...]:
+    """The variables with the admissible initial state as their values."""
+    return tuple(
+        replace(v, value=sp.Float(str(values[v.name]), 50) if v.name in values else None)
+        for v in variables
+    )

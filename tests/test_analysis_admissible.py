@@ -26,7 +26,7 @@ from linkages import (
     z,
 )
 
-from eomgen.analysis import admissible, linkage
+from eomgen.analysis import admissible, linkage, neighbourhood
 from eomgen.analysis.linkage import PRECISE
 from eomgen.errors import UsageError
 
@@ -245,3 +245,16 @@ def test_the_squeezer_closes_at_the_published_angles() -> None:
     found = admissible.positions(squeezer()).state.coordinates
     for value, published in zip(found, SQUEEZER.values(), strict=True):
         assert abs(value - PRECISE.number(published)) < 1e-15
+
+
+def test_angles_are_shown_between_minus_pi_and_pi() -> None:
+    turn = 2 * PRECISE.functions["pi"]()
+    assert neighbourhood.principal([turn + 1, turn + 1], [True, False])[1] == turn + 1
+    shown = neighbourhood.principal([v + turn for v in (1, 3, -3)] + [-turn / 2], [True] * 4)
+    assert [float(v) for v in shown] == pytest.approx([1, 3, -3, float(turn / 2)])
+
+
+def test_lengths_are_not_angles() -> None:
+    scene = machine("x theta", {"c": (HOLONOMIC, x - sp.sin(symbol("theta")))})
+    state = admissible.positions(scene).state
+    assert neighbourhood.periodic(linkage.of(scene), state) == (False, True)

@@ -213,6 +213,23 @@ def test_a_combination_with_constant_shares_is_found() -> None:
     assert equals(combination.relation, y + z)
 
 
+def test_an_exact_sum_of_rows_is_found() -> None:
+    rows = {"a": (RATES, dx - y * dtheta), "b": (RATES, dx + y * dtheta - 2 * dy)}
+    found = integrability.decide(machine("x y theta", rows, initial={"y": R(1)}))
+    assert found.hidden == 2
+    assert all(v.is_integrable and not v.is_integrable_alone for v in found.verdicts)
+    (combination,) = found.combinations
+    assert combination.shares == (("a", 1), ("b", 1))
+    assert equals(combination.relation, x - y)
+
+
+def test_a_one_form_that_is_not_exact_has_no_potential() -> None:
+    algebra = ClosedForm()
+    forms = [(x, algebra.of(y)), (y, algebra.number(0))]
+    assert not antiderivative.is_exact(algebra, forms)
+    assert antiderivative.potential(algebra, forms) is None
+
+
 def test_a_row_is_integrated_where_the_positions_allow() -> None:
     """With the heading held by a position constraint the sleigh slides on a line."""
     rows = {

@@ -218,10 +218,21 @@ def test_bricards_mechanism_moves_because_a_row_is_redundant() -> None:
     assert (found.coordinates, len(found.rows), found.rank) == (6, 6, 5)
     assert found.degrees_of_freedom == 1
     assert found.dropped == ("c6",)
-    assert found.warnings[0].startswith("W-RANK: constraint c6 depends on c1, ")
+    # positions that satisfy the other five rows only are no singular positions of the mechanism
+    (warning,) = found.warnings
+    assert warning.startswith("W-RANK: constraint c6 depends on c1, ")
 
 
 def test_the_squeezer_has_one_degree_of_freedom() -> None:
     found = rank.freedom(squeezer())
     assert (found.rank, found.degrees_of_freedom, found.dropped) == (6, 1, ())
     assert found.basis.independent == ("Theta",)
+
+
+def test_a_row_that_depends_at_one_state_only_is_kept() -> None:
+    one, two = (
+        [[PRECISE.number(v) for v in row] for row in rows]
+        for rows in ([[1, 0], [0, 1]], [[1, 0], [1, 0]])
+    )
+    assert rank.dependencies([two, one, two]) == {}
+    assert rank.dependencies([two, two]) == {1: (0,)}

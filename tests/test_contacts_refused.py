@@ -81,6 +81,12 @@ def test_a_gap_is_looked_at_where_it_is_defined() -> None:
         assert contact.touch.point == "block"
 
 
+def test_points_that_move_alike_are_one() -> None:
+    text = ROOT.replace("range:", 'points: {corner: "[x + d/9, y]"}\nrange:')
+    (contact,) = contacts.of(Scene(text).machine)
+    assert contact.touch.point == "block"
+
+
 def test_friction_on_one_of_two_particles_finds_it() -> None:
     text = TWO.replace("(x - u)^2 + (y - v)^2 >= d^2", "v >= 0")
     found = Scene(text)

@@ -37,7 +37,8 @@ ALLOWED: dict[str, set[str]] = {
     "evaluate": RECORDS | {"mechanics", "compile", "interpreter", "render", "numerics", "states"},
     "files": {"errors"},
     "shelf": {"errors", "files", "render", "spec"},
-    "outputs": RECORDS | {"analysis", "study", "render", "checks", "spec"},
+    "output_links": {"analysis", "formulation", "render"},
+    "outputs": RECORDS | {"output_links", "analysis", "study", "render", "checks", "spec"},
     "cli": {
         "__init__",
         "errors",
