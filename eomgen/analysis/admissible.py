@@ -138,7 +138,7 @@ def describe(machine: Machine, found: Admissible) -> tuple[str, ...]:
 
 
 def _short(value: Any) -> str:
-    return f"{float(value):.6g}"
+    return f"{0 if abs(value) < MOVED else float(value):.6g}"
 
 
 def _moves(
@@ -214,7 +214,10 @@ def _others(linkage: Linkage, state: State, free: Sequence[int]) -> tuple[tuple[
     found = [state.coordinates]
     for start in starts(linkage, state, free)[1:]:
         outcome = newton.close(problem, start, free)
-        if outcome.closed and not any(same(outcome.values, f, angles) for f in found):
+        if not outcome.closed or any(same(outcome.values, f, angles) for f in found):
+            continue
+        # one of a continuum says nothing
+        if _is_isolated(linkage, replace(state, coordinates=outcome.values), free):
             found.append(outcome.values)
     return tuple(tuple(principal(v, angles)) for v in found[1:])
 
@@ -227,13 +230,17 @@ def _is_isolated(linkage: Linkage, state: State, free: Sequence[int]) -> bool:
     return bool(np.linalg.matrix_rank(columns, tol=1e-9) == len(free))
 
 
-def draw(machine: Machine, count: int = 5, seed: int = 1) -> tuple[Admissible, ...]:
+def draw(
+    machine: Machine, count: int = 5, seed: int = 1, first: Admissible | None = None
+) -> tuple[Admissible, ...]:
     """Random admissible states: inside `range` where it is declared, else around the initial one.
+
+    first: the initial state, where it was found before.
 
     Raises:
         UsageError: there is no admissible state, or none was found inside `range`.
     """
-    first = positions(machine)
+    first = positions(machine) if first is None else first
     linkage = linkages.of(machine)
     chance = random.Random(f"{seed} {linkage.model.name}")
     boxes = _boxes(linkage, first.state)

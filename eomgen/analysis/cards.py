@@ -61,14 +61,15 @@ def report(machine: Machine) -> Report:
     Raises:
         UsageError: no admissible state, or constraints that cannot be imposed.
     """
-    states = admissible.draw(machine, rank.STATES)
+    initial = admissible.positions(machine)
+    states = admissible.draw(machine, rank.STATES, first=initial)
     decided = integrability.decide(machine, states)
     freedom = rank.freedom(machine, states, decided.hidden)
     return Report(
         cards=_cards(machine.model, freedom, decided),
         freedom=freedom,
         integrability=decided,
-        initial=admissible.positions(machine),
+        initial=initial,
         states=states,
     )
 

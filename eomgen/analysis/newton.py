@@ -21,6 +21,8 @@ Rows = tuple[list[Any], list[list[Any]]]  # residuals, Jacobian
 Problem = Callable[[Sequence[Any], Arithmetic], Rows]
 
 MOST_STEPS = 100
+SLOW = 0.97  # a step that leaves more than this share of the residual
+PATIENCE = 5  # slow steps on end, as at a minimum that is no zero
 MOST_POLISHING = 250  # linear convergence, where J loses rank, gains one bit a step
 CUT = 1e-11  # singular values below this share of the largest are zero
 FLOAT_TOLERANCE = 1e-10
@@ -74,15 +76,18 @@ def _descend(
         residual, slope = _floats(problem, x)
     except IRREGULAR:
         return None
+    slow = 0
     for _ in range(MOST_STEPS):
-        if _is_closed(residual, slope, x, tolerance) or not movable:
+        if _is_closed(residual, slope, x, tolerance) or not movable or slow > PATIENCE:
             break
         step = np.zeros_like(x)
         step[movable] = -np.linalg.pinv(slope[:, movable], rcond=CUT) @ residual
-        found = _search(problem, x, step, float(np.linalg.norm(residual)))
+        before = float(np.linalg.norm(residual))
+        found = _search(problem, x, step, before)
         if found is None:
             break
         x, residual, slope = found
+        slow = slow + 1 if np.linalg.norm(residual) > SLOW * before else 0
     return x
 
 

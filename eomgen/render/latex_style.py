@@ -38,7 +38,6 @@ def style(model: Model) -> Style:
         pairs=pairs,
         equation=equation,
         at_least=lambda left, right: relation(rf"{left} \ge {right}"),
-        difference=lambda whole, part, rest: f"{whole} - {part} = {rest}",
         matrix=matrix,
         fits=lambda rows: matrix_width(rows) <= LINE - GAP,
         remark=lambda text: rf"\text{{{escaped(text)}}}",

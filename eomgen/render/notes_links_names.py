@@ -11,7 +11,7 @@ from eomgen.render.latex_width import width
 from eomgen.render.style import Style
 from eomgen.render.tree import Function, Number, Power, Product, Sum, Symbol, Tree
 
-WIDEST = 7.0  # figures of a multiplier that is named after its row
+WIDEST = 6.0  # figures of a multiplier that is named after its row
 
 Aliases = Mapping[str, str]  # the symbol of a multiplier -> the name under which it is shown
 

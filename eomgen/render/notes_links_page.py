@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
 
 from eomgen.algebra.normal import Form
 from eomgen.mechanics.equations import multiplier_name, virtual_name
 from eomgen.model import Constraint
-from eomgen.render import arrange, notes_data
+from eomgen.render import arrange, notes_data, tree
 from eomgen.render.notes_links import LinkCard, Links
 from eomgen.render.notes_page import How, Page, formula
 
@@ -66,6 +67,7 @@ def _card(page: Page, card: LinkCard) -> dict[str, object]:
     return {
         "name": style.words(card.name),
         "text": style.words(card.text),
+        "is_bilateral": card.is_bilateral,
         "answers": ", ".join(_answers(page, card)),
         "equations": tuple(_equations(page, card)),
         "virtual": tuple(_virtual(page, card)),
@@ -140,7 +142,8 @@ def _remarks(page: Page, card: LinkCard) -> Iterator[str]:
     """Multipliers, rows that say nothing new, contact and flight, what was not found."""
     words = page.words
     if card.is_bilateral:
-        yield words["multiplier"].format(symbols=_symbols(page, map(multiplier_name, card.rows)))
+        said = words["multiplier" if len(card.rows) == 1 else "multipliers"]
+        yield said.format(symbols=_symbols(page, map(multiplier_name, card.rows)))
     elif card.rows:
         yield from _contact(page, card)
     if card.is_stated_in_rates and card.is_holonomic and None in card.hidden:
@@ -197,10 +200,11 @@ def _freedom(page: Page, links: Links) -> dict[str, object]:
 def _counts(page: Page, links: Links) -> Iterator[Row]:
     """Rows of the count; the least number of coordinates where it is another number."""
     count, rank, freedom = links.coordinates, links.rank, links.degrees_of_freedom
-    minus = page.style.inline(page.style.difference(str(count), str(rank), str(freedom)))
+    difference = tree.Sum((tree.Number(Fraction(count)), tree.Number(Fraction(-rank))))
+    proof = f"{page.style.formula(difference)} = {freedom}" if rank else str(freedom)
     yield {"label": page.words["count_coordinates"], "body": str(count)}
     yield {"label": page.words["count_rank"], "body": str(rank)}
-    yield {"label": page.words["count_freedom"], "body": minus}
+    yield {"label": page.words["count_freedom"], "body": page.style.inline(proof)}
     if links.minimal_coordinates != freedom:
         label = page.words["count_minimal"]
         yield {"label": label, "body": str(links.minimal_coordinates)}

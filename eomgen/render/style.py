@@ -29,7 +29,6 @@ class Style:
     pairs: Callable[[Sequence[Rows]], str]  # equations beside each other
     equation: Callable[[str, str], str]  # left = right, broken anywhere
     at_least: Callable[[str, str], str]  # left >= right, broken anywhere
-    difference: Callable[[str, str, str], str]  # 3 - 2 = 1
     matrix: Callable[[Sequence[Sequence[str]]], str]
     fits: Callable[[Sequence[Sequence[str]]], bool]  # whether a matrix goes on a line
     remark: Callable[[str], str]  # words in place of a formula

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from eomgen.render import layout
 from eomgen.render.style import Rows, Style
-from eomgen.render.text import MINUS, name, text
+from eomgen.render.text import name, text
 
 LINE = 96
 
@@ -41,7 +41,6 @@ def style() -> Style:
         pairs=lambda rows: display([equation for row in rows for equation in row]),
         equation=equation,
         at_least=lambda left, right: relation(f"{left} ≥ {right}"),
-        difference=lambda whole, part, rest: f"{whole} {MINUS} {part} = {rest}",
         matrix=matrix,
         fits=lambda rows: matrix_width(rows) <= LINE,
         remark=lambda words: f"({words})",

@@ -37,6 +37,7 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "form_hidden": "integrated",
         "constant": "constant",
         "multiplier": "Multiplier: {symbols}.",
+        "multipliers": "Multipliers: {symbols}.",
         "redundant": "Redundant, as it follows from other constraints: {rows}.",
         "hidden_unknown": "What it says between positions was not found in closed form.",
         "contact": "In contact the gap is zero, the constraint holds as a bilateral one does, and"
@@ -60,21 +61,21 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         " greater than that of the degrees of freedom, {freedom}.",
         "count_contact": "This holds in flight; a closed gap counts as one more constraint.",
         "combined": "Together they can be integrated:",
-        "basis": "Arbitrary virtual displacements: {symbols}.",
-        "basis_others": "With arbitrary {symbols}, the other virtual displacements are",
+        "basis": "Basis of the virtual displacements: {symbols}.",
+        "basis_others": "Basis of the virtual displacements: {symbols}. The others follow from it:",
         "no_basis": "No virtual displacement is possible.",
         "coordinates_linked": "The set of coordinates is linked: their number, {count}, is greater"
         " than that of the degrees of freedom, {freedom}.",
         "coordinates_independent": "The coordinates are independent of each other, and yet their"
         " number, {count}, is greater than that of the degrees of freedom, {freedom}.",
         "first_kind": "Lagrange's equations of the first kind",
-        "multipliers": "Ideal constraint forces do no virtual work. Each constraint brings a"
+        "ideal": "Ideal constraint forces do no virtual work. Each constraint brings a"
         " multiplier; what stands beside it is the coefficient of the virtual displacement in the"
         " virtual form.",
         "together": "together with the constraints",
         "flight": "These are the equations of flight. In contact, each closed gap adds its"
         " multiplier, times the coefficient of the virtual displacement in its virtual form, to the"
-        " right side.",
+        " generalized force.",
         "speeds": "The speeds are",
         "rates": "so that the rates are",
         "prescribed": "Prescribed motions",
@@ -132,6 +133,7 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "form_hidden": "integrada",
         "constant": "constante",
         "multiplier": "Multiplicador: {symbols}.",
+        "multipliers": "Multiplicadores: {symbols}.",
         "redundant": "Redundante, pues se deduce de otras ligaduras: {rows}.",
         "hidden_unknown": "No se ha hallado en forma cerrada su relación entre posiciones.",
         "contact": "En contacto la holgura es nula, la ligadura actúa como una bilateral y su fuerza"
@@ -155,21 +157,22 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         " que el de grados de libertad, {freedom}.",
         "count_contact": "Esto vale en vuelo; una holgura cerrada cuenta como una ligadura más.",
         "combined": "Juntas se pueden integrar:",
-        "basis": "Desplazamientos virtuales arbitrarios: {symbols}.",
-        "basis_others": "Con {symbols} arbitrarios, los demás desplazamientos virtuales son",
+        "basis": "Base de los desplazamientos virtuales: {symbols}.",
+        "basis_others": "Base de los desplazamientos virtuales: {symbols}. De ella se deducen los"
+        " demás:",
         "no_basis": "Ningún desplazamiento virtual es posible.",
         "coordinates_linked": "El conjunto de coordenadas es ligado: su número, {count}, es mayor"
         " que el de grados de libertad, {freedom}.",
         "coordinates_independent": "Las coordenadas son independientes entre sí y, aun así, su"
         " número, {count}, es mayor que el de grados de libertad, {freedom}.",
         "first_kind": "Ecuaciones de Lagrange de primera especie",
-        "multipliers": "Las fuerzas de ligadura ideales no realizan trabajo virtual. Cada ligadura"
+        "ideal": "Las fuerzas de ligadura ideales no realizan trabajo virtual. Cada ligadura"
         " aporta un multiplicador; lo acompaña el coeficiente del desplazamiento virtual en la forma"
         " virtual.",
         "together": "junto con las ligaduras",
-        "flight": "Estas son las ecuaciones en vuelo. En contacto, cada holgura cerrada suma al"
-        " segundo miembro su multiplicador por el coeficiente del desplazamiento virtual en su forma"
-        " virtual.",
+        "flight": "Estas son las ecuaciones en vuelo. En contacto, cada holgura cerrada suma a la"
+        " fuerza generalizada su multiplicador por el coeficiente del desplazamiento virtual en su"
+        " forma virtual.",
         "speeds": "Las velocidades generalizadas son",
         "rates": "de modo que",
         "prescribed": "Movimientos prescritos",
