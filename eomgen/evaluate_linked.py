@@ -11,8 +11,10 @@ import sympy as sp
 from eomgen import interpreter, reactions
 from eomgen.algebra.arithmetic import evaluate as node_values
 from eomgen.algebra.arithmetic import mpmath_arithmetic
+from eomgen.compile_contacts import Touching
 from eomgen.errors import CheckError
 from eomgen.evaluate import GUARD_DIGITS, Engine, Result, arguments, engine, named_results
+from eomgen.evaluate_contacts import contacts
 from eomgen.model import Model
 from eomgen.program import Program
 from eomgen.states import State
@@ -67,6 +69,9 @@ def evaluate(
 
 def _result(study: LinkedStudy, source: Program, chosen: Engine, state: State) -> Result:
     result = named_results(chosen, source, study.scene.model, state)
+    if study.scene.touches:
+        touching = Touching(study.machine)
+        result["contacts"] = contacts(chosen, touching, study.scene.model, state)
     if not study.machine.kept:
         return result
     raw = chosen.call("multipliers", state)

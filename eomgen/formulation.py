@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import random
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from eomgen.algebra.arithmetic import FLOAT
+from eomgen.algebra.arithmetic import FLOAT, evaluate
 from eomgen.algebra.closed import ClosedForm, Evaluation
+from eomgen.algebra.graph import Node, below
 from eomgen.algebra.normal import Form
+from eomgen.analysis import linkage
 from eomgen.analysis.admissible import Admissible
 from eomgen.analysis.cards import Report
 from eomgen.compile import Machine
 from eomgen.errors import UsageError
 from eomgen.mechanics import constraints, lagrange, minimal, minimal_graph, nullspace
 from eomgen.mechanics.minimal import Elimination, Residual
+from eomgen.mechanics.minimal_graph import Chosen
 from eomgen.model import Model
 
 NAMES = ("auto", "minimal", "nullspace", "multiplier")
+DEAD_POINT_SAMPLES = 200
 LEAST_DISCRIMINANT = 0.05  # of its largest value over the sampled states
 
 
@@ -32,6 +37,11 @@ class Linked:
     def model(self) -> Model:
         """The scene."""
         return self.machine.model
+
+    @property
+    def touches(self) -> bool:
+        """Whether a constraint is one-sided: contact and flight need all coordinates."""
+        return any(c.kind == "unilateral" for c in self.model.constraints)
 
     @property
     def asks_reactions(self) -> bool:
@@ -82,8 +92,8 @@ def choose(scene: Linked, wanted: str = "auto") -> Formulation:
     """
     if wanted != "auto":
         return MAKERS[wanted](scene)
-    if not scene.machine.kept:
-        return replace(MAKERS["multiplier"](scene), why="no constraint is bilateral")
+    if scene.touches:
+        return replace(MAKERS["multiplier"](scene), why="contact and flight, over all coordinates")
     if scene.asks_reactions:
         return replace(MAKERS["multiplier"](scene), why="reactions are asked for")
     for name in ("minimal", "nullspace"):
@@ -110,6 +120,8 @@ def _multiplier(scene: Linked) -> Formulation:
 
 
 def _refuse_free(scene: Linked, name: str) -> None:
+    if scene.touches:
+        raise UsageError(f"{name}: a one-sided constraint needs all coordinates; use multiplier")
     if not scene.machine.kept:
         raise UsageError(f"{name}: no bilateral constraint reduces this scene; use multiplier")
 
@@ -143,16 +155,15 @@ def _minimal(scene: Linked) -> Formulation:
     if any(c.kind == "nonholonomic" for c in scene.model.constraints):
         raise UsageError("minimal: a nonholonomic constraint eliminates no coordinate")
     found = _eliminations(scene)
-    _refuse_dead_points(scene, found)
     try:
         chosen = minimal_graph.choose(found, _values(scene, scene.report.initial))
     except ValueError as error:
         raise UsageError(f"minimal: {error}") from error
+    _refuse_dead_points(scene, found, chosen)
     names = ", ".join(c.coordinate.name for c in chosen)
-    branches = [
-        f"{c.coordinate.name}: {minimal.BRANCHES[c.branch]:+d}" for c in chosen if c.discriminant
-    ]
-    tail = f", branch {', '.join(branches)}" if branches else ""
+    rooted = [c for c in chosen if c.discriminant is not None]
+    branches = ", ".join(f"{c.coordinate.name}: {minimal.BRANCHES[c.branch]:+d}" for c in rooted)
+    tail = f", branch {branches}" if branches else ""
     machine = Machine(minimal_graph.kinematics(scene.model, chosen))
     return Formulation("minimal", f"{names} eliminated in closed form{tail}", machine)
 
@@ -177,23 +188,49 @@ def _eliminations(scene: Linked) -> tuple[Elimination, ...]:
     return found
 
 
-def _refuse_dead_points(scene: Linked, found: Sequence[Elimination]) -> None:
-    """A formula whose root nearly vanishes in the sampled range is not safe."""
-    for elimination in found:
-        if elimination.discriminant is None:
-            continue
-        sizes = [
-            _number(elimination.discriminant, scene, state)
-            for state in (scene.report.initial, *scene.report.states)
-        ]
-        if min(sizes) < LEAST_DISCRIMINANT * max(abs(s) for s in sizes):
+def _refuse_dead_points(
+    scene: Linked, found: Sequence[Elimination], chosen: Sequence[Chosen]
+) -> None:
+    """A formula whose root nearly vanishes somewhere in the range is not safe."""
+    chance = random.Random(scene.model.name)
+    sizes: dict[str, list[float]] = {e.coordinate.name: [] for e in found if e.discriminant}
+    for _ in range(DEAD_POINT_SAMPLES):
+        values = _values(scene, scene.report.initial) | _independent(scene, chance)
+        for elimination, link in zip(found, chosen, strict=True):
+            if elimination.discriminant is not None:
+                size = _number(elimination.discriminant, values)
+                sizes[elimination.coordinate.name].append(size)
+                if size < 0:
+                    break
+            formula = elimination.branches[link.branch]
+            values[elimination.coordinate.symbol] = _number(formula, values)
+    for name, seen in sizes.items():
+        if min(seen) < LEAST_DISCRIMINANT * max(abs(s) for s in seen):
             raise UsageError(
-                f"minimal: W-DEAD: {elimination.coordinate.name} has a dead point inside `range`; "
+                f"minimal: W-DEAD: {name} has a dead point inside `range`; "
                 "narrow the range or use nullspace"
             )
 
 
-def _values(scene: Linked, state: Admissible) -> dict[object, float]:
+def _independent(scene: Linked, chance: random.Random) -> dict[Any, float]:
+    """Random independent coordinates: in the declared range, else between the sampled states."""
+    names = [c.name for c in scene.model.coordinates]
+    states = [scene.report.initial, *scene.report.states]
+    parameters = scene.report.initial.state.parameters
+    drawn: dict[Any, float] = {}
+    for name in scene.report.freedom.basis.independent:
+        j = names.index(name)
+        ends = [float(s.state.coordinates[j]) for s in states]
+        if name in scene.model.range:
+            ends = [
+                float(linkage.constant(linkage.of(scene.machine), v, parameters))
+                for v in scene.model.range[name]
+            ]
+        drawn[scene.model.coordinates[j].symbol] = chance.uniform(min(ends), max(ends))
+    return drawn
+
+
+def _values(scene: Linked, state: Admissible) -> dict[Any, float]:
     """Values of the symbols of a configuration."""
     bindings = scene.machine.kinematics.algebra.bindings
     leaves = {
@@ -201,12 +238,20 @@ def _values(scene: Linked, state: Admissible) -> dict[object, float]:
         for node in scene.machine.leaves
         if node.datum.argument != "inputs"
     }
-    return {s: leaves[node] for s, node in bindings.items() if node in leaves}
+    bound = {s: node for s, node in bindings.items() if _known(node, leaves)}
+    return dict(zip(bound, evaluate(bound.values(), leaves, FLOAT), strict=True))
 
 
-def _number(form: Form, scene: Linked, state: Admissible) -> float:
-    apply = Evaluation(_values(scene, state), float, lambda name, *a: FLOAT.functions[name](*a)).of
-    return float(apply(form))
+def _known(node: Node, leaves: Mapping[Node, float]) -> bool:
+    return all(a in leaves for a in below([node]) if a.operator == "read")
+
+
+def _number(form: Form, values: Mapping[Any, float]) -> float:
+    """The value of a form, infinite where it is not defined."""
+    try:
+        return float(Evaluation(values, float, lambda n, *a: FLOAT.functions[n](*a)).of(form))
+    except (ValueError, ZeroDivisionError):
+        return float("inf")
 
 
 MAKERS: dict[str, Callable[[Linked], Formulation]] = {

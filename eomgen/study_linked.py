@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from eomgen import compile, compile_linked, formulation
+from eomgen import compile, compile_contacts, compile_linked, formulation
 from eomgen.analysis import cards
 from eomgen.checks import agreement, dimensions, expectations, links, power, samples
 from eomgen.compile import Machine
@@ -78,7 +78,8 @@ Extra = Callable[[Linked, Formulation], tuple[Function, ...]]
 
 
 def _with_multipliers(scene: Linked, chosen: Formulation) -> tuple[Function, ...]:
-    return compile_linked.functions(scene.machine) if scene.machine.kept else ()
+    bilateral = compile_linked.functions(scene.machine) if scene.machine.kept else ()
+    return (*bilateral, *compile_contacts.functions(scene.machine))
 
 
 def _with_rates(scene: Linked, chosen: Formulation) -> tuple[Function, ...]:

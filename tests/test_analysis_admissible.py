@@ -114,6 +114,14 @@ def test_a_free_mechanism_has_no_isolated_other_modes() -> None:
     assert admissible.positions(machine("x y", {"c": (HOLONOMIC, x**2 + y**2 - 1)})).others == ()
 
 
+def test_one_of_a_continuum_is_no_assembly_mode() -> None:
+    rows = {"c": (HOLONOMIC, y * (y - 1)), "d": (HOLONOMIC, y * (z - 2))}
+    known = {"initial": {"x": R(0)}, "guess": {"y": R(9, 10), "z": R(19, 10)}}
+    found = admissible.positions(machine("x y z", rows, **known))
+    assert [float(v) for v in found.state.coordinates] == [0, 1, 2]
+    assert found.others == ()
+
+
 def test_rates_are_the_least_change_that_satisfies_all_rows() -> None:
     scene = machine("x y", {"c": (RATES, dx + dy - 2)})
     rates = admissible.positions(scene).state.rates

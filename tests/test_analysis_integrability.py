@@ -213,6 +213,18 @@ def test_a_combination_with_constant_shares_is_found() -> None:
     assert equals(combination.relation, y + z)
 
 
+def test_a_sum_that_needs_a_factor_is_found() -> None:
+    first = dx - y * dtheta
+    rows = {"a": (RATES, first), "b": (RATES, z * dy - y * dz - first)}
+    ones = {"y": R(1), "z": R(1)}
+    found = integrability.decide(machine("x y z theta", rows, initial=ones))
+    assert found.hidden == 1
+    assert not any(v.is_integrable for v in found.verdicts)
+    (combination,) = found.combinations
+    assert combination.shares == (("a", 1), ("b", 1))
+    assert equals(combination.relation, z / y)
+
+
 def test_an_exact_sum_of_rows_is_found() -> None:
     rows = {"a": (RATES, dx - y * dtheta), "b": (RATES, dx + y * dtheta - 2 * dy)}
     found = integrability.decide(machine("x y theta", rows, initial={"y": R(1)}))

@@ -26,9 +26,19 @@ ALLOWED: dict[str, set[str]] = {
     "formulation": RECORDS | {"algebra", "analysis", "compile", "mechanics"},
     "reactions": RECORDS | {"algebra", "formulation", "mechanics"},
     "study_linked": RECORDS
-    | {"analysis", "checks", "compile", "compile_linked", "formulation", "mechanics"},
+    | {
+        "analysis",
+        "checks",
+        "compile",
+        "compile_contacts",
+        "compile_linked",
+        "formulation",
+        "mechanics",
+    },
     "study": RECORDS | {"spec", "mechanics", "compile", "checks", "study_linked"},
+    "evaluate_contacts": RECORDS | {"compile_contacts", "evaluate", "mechanics", "states"},
     "evaluate_linked": RECORDS
+    | {"compile_contacts", "evaluate_contacts"}
     | {"algebra", "evaluate", "interpreter", "reactions", "states", "study_linked"},
     "answers": RECORDS | {"evaluate", "evaluate_linked", "states", "study"},
     "render": RECORDS | {"algebra", "mechanics"},

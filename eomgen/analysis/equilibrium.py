@@ -99,6 +99,7 @@ class _Part:
             multipliers=tuple(r.multiplier for r in statics.links),
             regions=given.regions(closed, values, seen),
             scene=scene(closed, values.free),
+            constants=dict(values.everything),
         )
         return _Part(closed, touching, problem, find(problem), _has_potential(closed, forces))
 

@@ -204,7 +204,8 @@ def _notes(model: Model, balances: Iterable[Balance], links: Iterable[Link]) -> 
         forms += [*link.jacobian, *([] if link.residual is None else [link.residual])]
     held: set[sp.Symbol] = set().union(*(symbols_of(f) for f in forms))
     driven = {TIME, *(p.symbol for p in model.prescribed)}
-    if _is_driven(model):
+    links_driven = any(symbols_of(r.residual) & driven for r in links if r.residual is not None)
+    if links_driven or _is_driven(model):
         notes.append(MOVING)
     elif held & driven:
         notes.append(FROZEN)

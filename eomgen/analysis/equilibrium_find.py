@@ -43,6 +43,7 @@ class Problem:
     multipliers: tuple[sp.Symbol, ...]
     regions: tuple[Region, ...]
     scene: Scene
+    constants: dict[sp.Symbol, sp.Expr]  # values of everything but coordinates
 
     @property
     def free(self) -> tuple[int, ...]:
@@ -100,12 +101,14 @@ def _eliminated(problem: Problem) -> Found:
     if not system.polynomials:
         return _anywhere(problem)
     solutions = elimination.solve(system.polynomials)
+    if not system.is_exact and not solutions.real:
+        return _searched(problem, "rounding irrational constants proves no absence of roots")
     points = _points(problem, system, solutions)
     roots = _kept(problem, points)
     return Found(
         roots=roots,
         method=_exactly(system, solutions.complex_count, len(points), len(points) - len(roots)),
-        complete=True,
+        complete=system.is_exact or all(p.regular for p in points),
         isolated=not problem.arbitrary,
         arbitrary=problem.arbitrary,
     )
@@ -153,13 +156,22 @@ def _points(
             q[k] = _value(system, problem.model.coordinates[k].symbol, values)
         loads = [_value(system, m, values) for m in problem.multipliers]
         point = polish.checked(problem.scene, q, loads, problem.free)
-        if point is None:
+        if point is None and not system.is_exact:
+            point = polish.root(problem.scene, q, loads, problem.free)
+        if point is None and system.is_exact:
             raise CheckError(
                 "a root of the closed form is none of the graph: the two derivations disagree"
             )
-        better = polish.root(problem.scene, q, loads, problem.free) if point.regular else point
-        points.append(better or point)
+        if point is not None:
+            points.append(_polished(problem, point))
     return points
+
+
+def _polished(problem: Problem, point: Root) -> Root:
+    """The same root in all digits where Newton's method adds some."""
+    if not point.regular:
+        return point
+    return polish.root(problem.scene, point.coordinates, point.multipliers, problem.free) or point
 
 
 def _value(system: polynomials.System, symbol: sp.Symbol, values: Sequence[Any]) -> Any:
@@ -193,7 +205,7 @@ def _proven(problem: Problem) -> Found | None:
 
 def _searched(problem: Problem, why: str) -> Found:
     """From many starts."""
-    found = search(problem.scene, problem.box, problem.free)
+    found = search(problem.scene, problem.box, problem.free, _given(problem))
     regular, singular = _sorted_hits(problem, found)
     # a degenerate root that stands alone is found again and again, a member of a family once
     family = len(singular) > FAMILY or sum(h.count == 1 for h in singular) > 1
@@ -211,6 +223,17 @@ def _searched(problem: Problem, why: str) -> Found:
         arbitrary=problem.arbitrary,
         notes=notes if family else (),
     )
+
+
+def _given(problem: Problem) -> list[float]:
+    """The initial and guessed values, which close the loops; else the middle of the region."""
+    model = problem.model
+    known = {**model.guess, **model.initial}
+    constants = problem.constants
+    return [
+        float(known[c.name].xreplace(constants)) if c.name in known else (r.low + r.high) / 2
+        for c, r in zip(model.coordinates, problem.regions, strict=True)
+    ]
 
 
 def _sorted_hits(problem: Problem, found: Search) -> tuple[list[Hit], list[Hit]]:

@@ -17,6 +17,7 @@ from eomgen.analysis.equilibrium_search import RANK, system_matrix
 
 SHOWN = 30  # digits of a value
 MOST_STEPS = 400  # a root of multiplicity m converges like (1 - 1/m)^n
+NOISE = 1e-12  # rows and columns smaller than this share of the largest are zero
 NEGLIGIBLE = 1e-28  # of the size of a coordinate: zero
 
 
@@ -90,12 +91,13 @@ def checked(
 def is_regular(scene: Scene, found: Numbers, free: Sequence[int]) -> bool:
     """Whether the system's matrix has full column rank there, in plain floats."""
     matrix = _floats(scene, found, free)
-    rows = np.max(np.abs(matrix), axis=1, initial=0.0)
-    matrix = matrix / np.where(rows > 0, rows, 1.0)[:, None]
-    columns = np.max(np.abs(matrix), axis=0, initial=0.0)
     if not matrix.shape[1]:
         return True
-    if not columns.all() or matrix.shape[0] < matrix.shape[1]:
+    rows = np.max(np.abs(matrix), axis=1, initial=0.0)
+    noise = NOISE * rows.max(initial=0.0)  # what is left of zeros is not scaled up to one
+    matrix = matrix / np.where(rows > noise, rows, 1.0)[:, None]
+    columns = np.max(np.abs(matrix), axis=0, initial=0.0)
+    if columns.min() <= NOISE * columns.max() or matrix.shape[0] < matrix.shape[1]:
         return False
     values = np.linalg.svd(matrix / columns, compute_uv=False)
     return bool(values[-1] > RANK * values[0])
@@ -119,8 +121,11 @@ def _change(scene: Scene, found: Numbers, free: Sequence[int]) -> list[Any]:
     right = ctx.matrix([*found.balances, *found.residuals])
     if not matrix.cols:
         return []
-    if is_regular(scene, found, free):
-        return list(ctx.lu_solve(matrix, right))
+    if matrix.rows == matrix.cols and is_regular(scene, found, free):
+        try:
+            return list(ctx.lu_solve(matrix, right))
+        except ZeroDivisionError:
+            return _least(matrix, right)  # rows of very different size
     return _least(matrix, right)
 
 

@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 
 STARTS = 400
 ITERATIONS = 120
+COARSE, FINE = 1e-3, 1e-10  # shares of singular values that count: far from a root, near it
 SAMPLES = 16  # points at which typical sizes are read off
 SAME = 1e-6  # of the size of the box: nearer roots are one
 ACCEPTED = 1e-9  # residual, of the typical one at the starts
@@ -59,17 +60,19 @@ class Search:
     failed: int  # starts that led to no root
 
 
-def search(scene: Scene, box: Box, free: Sequence[int], starts: int = STARTS) -> Search:
-    """Roots from many starts; coordinates that are not `free` stay in the middle of the box."""
+def search(
+    scene: Scene, box: Box, free: Sequence[int], first: Sequence[float], starts: int = STARTS
+) -> Search:
+    """Roots from many starts; coordinates that are not `free` stay as they are at the first."""
     q = box.low + box.width * _sequence(len(box.low), starts)
-    middle = (box.low + box.high) / 2
+    q[0] = first
     held = [k for k in range(len(box.low)) if k not in free]
-    q[:, held] = middle[held]
+    q[:, held] = q[0, held]
     unknown = _Unknowns(scene, box, tuple(free))
     multipliers = unknown.first_multipliers(q)
     scale = unknown.scale(q)
-    for _ in range(ITERATIONS):
-        q, multipliers = unknown.step(q, multipliers)
+    for i in range(ITERATIONS):
+        q, multipliers = unknown.step(q, multipliers, COARSE if 2 * i < ITERATIONS else FINE)
     residual = unknown.residual(q, multipliers)
     small: Any = np.isfinite(residual) & (np.abs(residual) <= ACCEPTED * scale)
     good: Any = small.all(axis=1)
@@ -124,14 +127,14 @@ class _Unknowns:
             parts.append(_columns(np.abs(_stack(found.residuals, len(q)))))
         return np.concatenate(parts)
 
-    def step(self, q: Array, multipliers: Array) -> tuple[Array, Array]:
+    def step(self, q: Array, multipliers: Array, cut: float) -> tuple[Array, Array]:
         """One step, no coordinate moving more than a tenth of the box."""
         found = self.numbers(q, multipliers)
         residual = _stack([*found.balances, *found.residuals], len(q))
         matrix = system_matrix(found, self.scene.holonomic, self.free, len(q))
         lengths = self.box.width[list(self.free)]
         sizes = np.concatenate([lengths, np.ones(len(self.scene.multipliers))])
-        change = -_solved(matrix * sizes, residual) * sizes
+        change = -_solved(matrix * sizes, residual, cut) * sizes
         moves = change[:, : len(self.free)]
         largest = np.max(np.abs(moves) / lengths, axis=1, initial=0.0)
         moves = moves * np.minimum(1.0, 0.1 / np.maximum(largest, 1e-300))[:, None]
@@ -188,7 +191,7 @@ def _columns(values: Array) -> Array:
     return np.array([_typical(values[:, [k]]) for k in range(values.shape[1])])
 
 
-def _solved(matrix: Any, right: Any) -> Array:
+def _solved(matrix: Any, right: Any, cut: float = FINE) -> Array:
     """The least squares solution at every point; zero where the numbers are not finite."""
     fine = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
     matrix = np.where(fine[:, None, None], matrix, 0.0)
@@ -196,7 +199,7 @@ def _solved(matrix: Any, right: Any) -> Array:
     size = np.max(np.abs(matrix), axis=2, initial=0.0)
     size = np.where(size > 0, size, 1.0)
     scaled, load = matrix / size[:, :, None], right / size
-    result: Array = (np.linalg.pinv(scaled, rcond=1e-11) @ load[:, :, None])[:, :, 0]
+    result: Array = (np.linalg.pinv(scaled, rcond=cut) @ load[:, :, None])[:, :, 0]
     return result
 
 

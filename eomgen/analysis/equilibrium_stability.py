@@ -13,6 +13,7 @@ from eomgen.analysis.equilibrium_records import Stability
 from eomgen.analysis.equilibrium_scene import Scene
 
 ZERO = 1e-20  # of the largest second derivative
+FLOOR = 1e-40  # SI; where no second derivative differs from zero at all
 RIGID = "no admissible virtual displacement: nothing can move"
 
 
@@ -46,7 +47,7 @@ def stability(scene: Scene, root: Root, conservative: bool, typical: float) -> S
     typical: the size of second derivatives elsewhere, beside which those at the root may vanish.
     """
     values, rank = second_variation(root, len(scene.coordinates))
-    zero = ZERO * max(typical, *(abs(v) for row in root.numbers.slopes for v in row))
+    zero = max(FLOOR, ZERO * max(typical, *(abs(v) for row in root.numbers.slopes for v in row)))
     shown = tuple(0.0 if abs(v) <= zero else float(v) for v in values)
     reason = _no_energy(scene, root, conservative or len(values) == 1, rank)
     if reason:

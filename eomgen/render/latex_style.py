@@ -97,6 +97,8 @@ def equation(left: str, right: str) -> str:
 def relation(whole: str) -> str:
     """Rows of one relation, aligned at their left."""
     first, *rest = broken(whole, LINE - NUMBER)
+    # behind & TeX takes a minus for one between two terms
+    first = re.sub("^-", "{-}", first)
     spelled = [f"& {first}", *(rf"&\quad {line}" for line in rest)]
     return " \\notag \\\\\n".join(spelled)
 

@@ -9,8 +9,10 @@ from eomgen.algebra.normal import Form
 from eomgen.mechanics.equations import multiplier_name, virtual_name
 from eomgen.model import Constraint
 from eomgen.render import arrange, notes_data, tree
+from eomgen.render.arrange import Arranger
 from eomgen.render.notes_links import LinkCard, Links
 from eomgen.render.notes_page import How, Page, formula
+from eomgen.render.tree import Tree
 
 Row = Mapping[str, str]  # `label`: what kind of form; `body`: the equation
 
@@ -22,12 +24,14 @@ def tables(page: Page, links: Links | None) -> dict[str, object]:
             "set_said": _unlinked(page),
             "constraints": (),
             "constraints_said": (),
+            "between_rates": False,
             "freedom": {},
         }
     return {
         "set_said": _set(page, links),
         "constraints": tuple(_card(page, c) for c in links.cards),
         "constraints_said": tuple(_constraints_said(page, links)),
+        "between_rates": any(c.is_stated_in_rates for c in links.cards),
         "freedom": _freedom(page, links),
     }
 
@@ -232,5 +236,31 @@ def _basis_said(page: Page, links: Links) -> str:
 def _basis(page: Page, links: Links) -> str:
     """The virtual displacements that follow from those of the basis."""
     found: Sequence[tuple[str, Form]] = links.displacements or ()
-    rows = [(page.style.symbol(virtual_name(n)), formula(page, arrange.work, f)) for n, f in found]
+    rows = [(page.style.symbol(virtual_name(n)), formula(page, displaced, f)) for n, f in found]
     return page.style.display(rows) if rows else ""
+
+
+def displaced(arranger: Arranger, form: Form) -> Tree:
+    """A virtual displacement over others, quotients of equal sums cancelled."""
+    terms = tree.terms_of(arrange.work(arranger, form))
+    return tree.total(tuple(_cancelled(t) for t in terms))
+
+
+def _cancelled(term: Tree) -> Tree:
+    """The term without the factors that stand on both sides of its fraction, or do but for sign."""
+    if not isinstance(term, tree.Product):
+        return term
+    number, above, below = term.coefficient, list(term.factors), list(term.divisors)
+    for divisor in term.divisors:
+        for sign, same in ((1, divisor), (-1, _opposite(divisor))):
+            if same in above and divisor in below:
+                above.remove(same)
+                below.remove(divisor)
+                number *= sign
+    return tree.product(number, tuple(above), tuple(below))
+
+
+def _opposite(found: Tree) -> Tree:
+    """A difference the other way round: b - a for a - b."""
+    terms = tree.terms_of(tree.negated(found))
+    return tree.total(tuple(sorted(terms, key=lambda t: tree.split_sign(t)[0])))

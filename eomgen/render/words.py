@@ -28,6 +28,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "inequality": "not holonomic, for an inequality eliminates no coordinate",
         "virtual": "A virtual displacement, infinitesimal and at constant time, keeps every"
         " constraint:",
+        "virtual_rates": "Where a constraint is stated between rates, the coefficients of the rates"
+        " take the place of these derivatives.",
         "form_equation": "constraint",
         "form_gap": "gap",
         "form_rate": "rate form",
@@ -54,7 +56,7 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "count_freedom": "degrees of freedom (independent virtual displacements)",
         "count_minimal": "minimal number of coordinates",
         "proof": "The rank was found at {states} admissible states.",
-        "all_holonomic": "All constraints are holonomic: the minimal number of coordinates is that"
+        "all_holonomic": "Every bilateral constraint is holonomic: the minimal number of coordinates is that"
         " of the degrees of freedom, {minimal}.",
         "some_nonholonomic": "A constraint that cannot be integrated restricts the virtual"
         " displacements, not the configurations: the minimal number of coordinates, {minimal}, is"
@@ -124,6 +126,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "inequality": "no holónoma, pues una desigualdad no elimina ninguna coordenada",
         "virtual": "Un desplazamiento virtual, infinitesimal y a tiempo constante, cumple todas las"
         " ligaduras:",
+        "virtual_rates": "Donde una ligadura se escribe entre velocidades, los coeficientes de las"
+        " velocidades ocupan el lugar de estas derivadas.",
         "form_equation": "ligadura",
         "form_gap": "holgura",
         "form_rate": "en velocidades",
@@ -150,8 +154,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "count_freedom": "grados de libertad (desplazamientos virtuales independientes)",
         "count_minimal": "número mínimo de coordenadas",
         "proof": "El rango se ha hallado en {states} estados admisibles.",
-        "all_holonomic": "Todas las ligaduras son holónomas: el número mínimo de coordenadas es el"
-        " de grados de libertad, {minimal}.",
+        "all_holonomic": "Todas las ligaduras bilaterales son holónomas: el número mínimo de"
+        " coordenadas es el de grados de libertad, {minimal}.",
         "some_nonholonomic": "Una ligadura que no se puede integrar restringe los desplazamientos"
         " virtuales, no las configuraciones: el número mínimo de coordenadas, {minimal}, es mayor"
         " que el de grados de libertad, {freedom}.",
