@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from eomgen import evaluate, evaluate_linked, states
+from eomgen import evaluate, states
 from eomgen.errors import UsageError
 from eomgen.evaluate import Result
 from eomgen.study import Study
@@ -38,6 +38,8 @@ def answers(study: Study, text: str, question: Question) -> list[Result]:
 
 def _linked(study: Study, text: str, question: Question) -> list[Result]:
     """The same for a scene with constraints: its program with multipliers answers."""
+    from eomgen import evaluate_linked
+
     assert study.links is not None
     source = study.links.full_program()
     model = evaluate_linked.consistent(study.links)

@@ -9,9 +9,7 @@ from math import ceil, log10
 from pathlib import Path
 from typing import Any
 
-from eomgen.analysis.cards import to_json
 from eomgen.errors import EomgenError
-from eomgen.output_links import links
 from eomgen.render.notes import Notes
 from eomgen.render.targets import TARGETS, Named, render
 from eomgen.render.templating import environment
@@ -33,6 +31,8 @@ def _notes(study: Study, wish: Wish) -> Named:
     line = check_line(study.report, wish.language)
     shown = None
     if study.links is not None:
+        from eomgen.output_links import links
+
         shown = links(study.links.scene.report, study.links.chosen, wish.language)
     return Notes(study.derivation, wish.language, line, wish.steps, shown)
 
@@ -124,7 +124,16 @@ def _text_summary(spec: str, study: Study) -> str:
     count = study.freedom
     freedom = f"{count} degree{'s' if count != 1 else ''} of freedom"
     said = "; ".join([freedom, *_linked_words(study), check_line(study.report, "en")])
-    return f"{spec}: {said}"
+    return "\n    ".join([f"{spec}: {said}", *_initial_words(study)])
+
+
+def _initial_words(study: Study) -> tuple[str, ...]:
+    """How far the initial state was moved to the constraints, and other assembly modes."""
+    if study.links is None:
+        return ()
+    from eomgen.analysis.admissible import describe
+
+    return describe(study.machine, study.links.scene.report.initial)
 
 
 def _linked_words(study: Study) -> list[str]:
@@ -156,6 +165,8 @@ def _linked_json(study: Study) -> dict[str, Any]:
     """The cards of a linked scene, and what was decided."""
     if study.links is None:
         return {}
+    from eomgen.analysis.cards import to_json
+
     freedom = study.links.scene.report.freedom
     return {
         "formulation": study.links.chosen.name,

@@ -8,15 +8,18 @@ text ─ spec.read ─► Model ─┬─ lagrange.derive ─► Derivation (clo
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from eomgen import compile, study_linked
+from eomgen import compile
 from eomgen.checks import agreement, dimensions, expectations, power, samples
 from eomgen.mechanics import lagrange
 from eomgen.mechanics.equations import Derivation
 from eomgen.model import Model
 from eomgen.program import Program
 from eomgen.spec import read
-from eomgen.study_linked import LinkedStudy
+
+if TYPE_CHECKING:
+    from eomgen.study_linked import LinkedStudy
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,9 @@ def of_text(text: str | bytes, file: str, formulation: str = "auto") -> Study:
 def of_model(model: Model, formulation: str = "auto") -> Study:
     """The study of a model; raises as `of_text`."""
     if model.constraints:
+        # imported where it is needed: the analysis of constraints brings NumPy
+        from eomgen import study_linked
+
         return _linked(study_linked.of_model(model, formulation))
     derivation = lagrange.derive(model)
     machine = compile.machine_of(model)

@@ -30,7 +30,8 @@ MOST_EQUATIONS = 12  # of that system
 FAMILY = 8  # more singular roots than this are members of a family
 SHOWN_OF_FAMILY = 3
 SAME = 1e-18  # roots nearer than this share of the region are one
-EDGE = 1e-20
+EDGE = 1e-20  # of a turn
+ROUGH = 1e-6  # slack at the bounds before a root is polished
 
 
 @dataclass(frozen=True)
@@ -217,7 +218,7 @@ def _searched(problem: Problem, why: str) -> Found:
     notes = (f"the equilibria form a continuous family, {SHOWN_OF_FAMILY} members are shown",)
     return Found(
         roots=_kept(problem, [p for p in points if p is not None]),
-        method=_words(problem, found, regular if family else chosen, why),
+        method=_words(problem, found, (regular, singular), why),
         complete=False,
         isolated=not family and not problem.arbitrary,
         arbitrary=problem.arbitrary,
@@ -237,29 +238,32 @@ def _given(problem: Problem) -> list[float]:
 
 
 def _sorted_hits(problem: Problem, found: Search) -> tuple[list[Hit], list[Hit]]:
-    """(regular hits, singular hits) inside the regions."""
+    """(regular hits, singular hits) inside the regions, or so near that digits must tell."""
     groups: tuple[list[Hit], list[Hit]] = ([], [])
     ctx = polish.context()
     for hit in found.hits:
         q = [ctx.convert(float(v)) for v in hit.coordinates]
         loads = [ctx.convert(float(v)) for v in hit.multipliers]
         numbers = polish.numbers_at(problem.scene, q, loads)
-        if numbers is not None and _inside(problem, q) is not None:
+        if numbers is not None and _inside(problem, q, ROUGH) is not None:
             regular = polish.is_regular(problem.scene, numbers, problem.free)
             groups[0 if regular else 1].append(hit)
     return groups
 
 
-def _words(problem: Problem, found: Search, hits: Sequence[Hit], why: str) -> str:
+def _words(problem: Problem, found: Search, groups: tuple[list[Hit], list[Hit]], why: str) -> str:
     """How it was searched and what that is worth."""
+    hits = groups[0] or groups[1]
+    outside = len(found.hits) - len(groups[0]) - len(groups[1])
+    beyond = f", {outside} were found outside the range" if outside else ""
     said = f"{why}; searched by Newton's method from {found.starts} starts{_within(problem)}; "
     if not hits:
-        return said + "no isolated root was found; roots may have been missed"
+        return said + f"no root was found{beyond}; roots may have been missed"
     rarest, last = min(h.count for h in hits), max(h.first for h in hits)
     times = "once" if rarest == 1 else f"{rarest} times"
     return said + (
         f"each root was found at least {times}, the {found.starts - last} starts after start "
-        f"{last} found no new one, {found.failed} led to none; roots may have been missed"
+        f"{last} found no new one, {found.failed} led to none{beyond}; roots may have been missed"
     )
 
 
@@ -280,12 +284,12 @@ def _kept(problem: Problem, points: Sequence[Root]) -> tuple[Root, ...]:
     return tuple(kept)
 
 
-def _inside(problem: Problem, q: Sequence[Any]) -> tuple[Any, ...] | None:
+def _inside(problem: Problem, q: Sequence[Any], slack: float = 1e-15) -> tuple[Any, ...] | None:
     """The coordinates within their regions; None where one is outside."""
     found = []
     for region, value in zip(problem.regions, q, strict=True):
         turned = _turned(region, value) if region.periodic else value
-        if not _contains(region, turned):
+        if not _contains(region, turned, slack):
             return None
         found.append(turned)
     return tuple(found)
@@ -299,15 +303,15 @@ def _turned(region: Region, value: Any) -> Any:
     return value - turn * ctx.ceil((value - high - slack) / turn)
 
 
-def _contains(region: Region, value: Any) -> bool:
+def _contains(region: Region, value: Any, slack: float) -> bool:
     """Whether a value lies in the region; lengths that the spec does not bound lie anywhere."""
     if region.positive and not value > 0:
         return False
     if not region.declared and not region.is_angle:
         return True
     # the bounds are floats
-    slack = 1e-15 * max(abs(region.low), abs(region.high))
-    return bool(region.low - slack <= value <= region.high + slack)
+    edge = slack * max(abs(region.low), abs(region.high))
+    return bool(region.low - edge <= value <= region.high + edge)
 
 
 def _same(problem: Problem, a: Sequence[Any], b: Sequence[Any]) -> bool:

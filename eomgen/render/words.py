@@ -72,8 +72,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         " number, {count}, is greater than that of the degrees of freedom, {freedom}.",
         "first_kind": "Lagrange's equations of the first kind",
         "ideal": "Ideal constraint forces do no virtual work. Each constraint brings a"
-        " multiplier; what stands beside it is the coefficient of the virtual displacement in the"
-        " virtual form.",
+        " multiplier; what stands beside it, {math}, is the coefficient of the virtual displacement"
+        " in the virtual form.",
         "together": "together with the constraints",
         "flight": "These are the equations of flight. In contact, each closed gap adds its"
         " multiplier, times the coefficient of the virtual displacement in its virtual form, to the"
@@ -171,8 +171,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         " número, {count}, es mayor que el de grados de libertad, {freedom}.",
         "first_kind": "Ecuaciones de Lagrange de primera especie",
         "ideal": "Las fuerzas de ligadura ideales no realizan trabajo virtual. Cada ligadura"
-        " aporta un multiplicador; lo acompaña el coeficiente del desplazamiento virtual en la forma"
-        " virtual.",
+        " aporta un multiplicador; lo acompaña {math}, el coeficiente del desplazamiento virtual en"
+        " la forma virtual.",
         "together": "junto con las ligaduras",
         "flight": "Estas son las ecuaciones en vuelo. En contacto, cada holgura cerrada suma a la"
         " fuerza generalizada su multiplicador por el coeficiente del desplazamiento virtual en su"
