@@ -180,6 +180,27 @@ def evaluate(spec: str, state: str | None, format_: str, **wishes: Any) -> None:
     click.echo(json.dumps(results, indent=2, ensure_ascii=False))
 
 
+@commands.command(
+    epilog=_epilog(
+        "eomgen statics four_bar.yaml --input tau=0.2", "eomgen statics truss.yaml --format json"
+    )
+)
+@spec_argument
+@click.option("--input", "inputs", multiple=True, metavar="NAME=VALUE", help="Zero if not given.")
+@click.option("--parameter", "parameters", multiple=True, metavar="NAME=VALUE")
+@click.option("--time", default="0", show_default=True, help="When prescribed motions stand still.")
+@format_option
+def statics(spec: str, format_: str, **wishes: Any) -> None:
+    """Find the equilibria of SPEC by virtual work, their stability, loads and reactions."""
+    from eomgen.rest import Load, report
+
+    load = Load(wishes["inputs"], wishes["parameters"], wishes["time"])
+    text = files.read(spec)
+    with _reporting(format_, files.shown(spec)):
+        said = report(text, files.shown(spec), load, format_)
+    click.echo(said)
+
+
 def _decoded(path: str) -> str:
     try:
         return files.read(path).decode()

@@ -47,6 +47,7 @@ ALLOWED: dict[str, set[str]] = {
     "evaluate": RECORDS | {"mechanics", "compile", "interpreter", "render", "numerics", "states"},
     "files": {"errors"},
     "shelf": {"errors", "files", "render", "spec"},
+    "rest": RECORDS | {"analysis", "mechanics", "spec", "states"},
     "output_links": {"analysis", "formulation", "render"},
     "outputs": RECORDS | {"output_links", "analysis", "study", "render", "checks", "spec"},
     "cli": {
@@ -56,6 +57,7 @@ ALLOWED: dict[str, set[str]] = {
         "outputs",
         "study",
         "answers",
+        "rest",
         "shelf",
         "spec",
     },

@@ -1,15 +1,10 @@
-"""The matrix form M q'' + h = Q + J' lambda: matrices where they fit on a line, else entry by entry.
-
-Beside it, where the speeds are the rates, stands J q'' + gamma = 0.
-"""
+"""The matrix form M q'' + h = Q + J' lambda, J q'' + gamma = 0: entries where a matrix is wide."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.algebra import normal
-from eomgen.algebra.normal import Form
-from eomgen.mechanics import lagrange
+from eomgen.mechanics.equations import multiplier_name
 from eomgen.render import arrange
 from eomgen.render.notes_page import Page, formula
 
@@ -39,9 +34,9 @@ def _links(page: Page) -> dict[str, object]:
     rows, style = page.derivation.constraints, page.style
     if not rows:
         return {"multipliers": ""}
-    jacobian = [[formula(page, arrange.motion, j) for j in row] for row in _jacobian(page)]
+    jacobian = [[formula(page, arrange.motion, j) for j in row.jacobian] for row in rows]
     gamma = [[formula(page, arrange.motion, row.gamma)] for row in rows]
-    multipliers = [[style.symbol(lagrange.multiplier_symbol(row.name).name)] for row in rows]
+    multipliers = [[style.symbol(multiplier_name(row.name))] for row in rows]
     whole, short = style.fits(jacobian), style.fits(gamma)
     return {
         "multipliers": style.matrix(multipliers),
@@ -50,20 +45,6 @@ def _links(page: Page) -> dict[str, object]:
         "gamma_whole": short,
         "gamma": style.matrix(gamma) if short else _column(page, page.style.symbol("gamma"), gamma),
     }
-
-
-def _jacobian(page: Page) -> list[list[Form]]:
-    """J, read off the equations: one row for each multiplier, one column for each equation."""
-    parts = []
-    for equation in page.derivation.equations:
-        assert equation.reaction is not None
-        ring = equation.reaction.ring
-        atoms = [
-            ring.atom(lagrange.multiplier_symbol(r.name)) for r in page.derivation.constraints
-        ]
-        shares, _ = normal.linear_parts(equation.reaction, atoms)
-        parts.append([shares[a] for a in atoms])
-    return [list(row) for row in zip(*parts, strict=True)]
 
 
 def _unknown(page: Page) -> list[str]:
