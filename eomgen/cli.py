@@ -16,6 +16,7 @@ import click
 
 from eomgen import __version__, files
 from eomgen.errors import EomgenError, SpecError, UsageError
+from eomgen.wanted import AUTO, NAMES, Wanted, wanted
 
 if TYPE_CHECKING:
     from eomgen.study import Study
@@ -55,7 +56,7 @@ templates_option = click.option(
 
 formulation_option = click.option(
     "--formulation",
-    type=click.Choice(["auto", "minimal", "nullspace", "multiplier"]),
+    type=click.Choice(NAMES),
     default="auto",
     show_default=True,
     help="Equations of a scene with constraints.",
@@ -80,7 +81,7 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
     from eomgen.outputs import Wish, rendered
 
     wish = Wish(("text",), wishes["language"], wishes["templates"], wishes["steps"])
-    (text,) = rendered(_study(spec, format_, formulation), wish).values()
+    (text,) = rendered(_study(spec, format_, Wanted(formulation)), wish).values()
     click.echo(text, nl=False)
 
 
@@ -107,6 +108,8 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 @language_option
 @templates_option
 @formulation_option
+@click.option("--baumgarte", metavar="ALPHA", help="Stabilise multipliers [1/s], only if asked.")
+@click.option("--step", metavar="H", help="The step [s] that caps ALPHA at 0.2/H.")
 @format_option
 def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -> None:
     """Write lecture notes, C and Python for SPEC."""
@@ -114,7 +117,9 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
 
     targets = wishes["targets"] or ("latex", "c", "python")
     wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"])
-    made = rendered(_study(spec, format_, wishes["formulation"]), wish)
+    with _reporting(format_, files.shown(spec)):
+        choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
+    made = rendered(_study(spec, format_, choice), wish)
     if output == files.STANDARD:
         _print_files(made)
         return
@@ -268,10 +273,10 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
         click.echo(str(path))
 
 
-def _study(spec: str, format_: str, formulation: str = "auto") -> Study:
+def _study(spec: str, format_: str, choice: Wanted = AUTO) -> Study:
     """The study of a spec; its faults are shown as asked and end the command."""
     with _reporting(format_, files.shown(spec)):
-        return _derived(spec, formulation)
+        return _derived(spec, choice)
 
 
 @contextmanager
@@ -284,11 +289,11 @@ def _reporting(format_: str, source: str) -> Iterator[None]:
         sys.exit(error.exit_code)
 
 
-def _derived(spec: str, formulation: str = "auto") -> Study:
+def _derived(spec: str, choice: Wanted = AUTO) -> Study:
     text = files.read(spec)
     from eomgen import study
 
-    return study.of_text(text, files.shown(spec), formulation)
+    return study.of_text(text, files.shown(spec), choice)
 
 
 def _complain(error: EomgenError, format_: str, source: str, *, err: bool = True) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 
 import sympy as sp
@@ -40,6 +41,7 @@ class Machine:
     kinematics: Kinematics[Node]
     kept: tuple[str, ...] = ()  # names of the independent rows, with a multiplier each
     pivots: ldl.Pivots = ()  # that the rates divide by
+    baumgarte: Fraction = Fraction(0)  # alpha [1/s] of stabilised rows; zero: none
 
     @property
     def model(self) -> Model:
@@ -81,7 +83,7 @@ class Machine:
     @cached_property
     def linked(self) -> multipliers.Solution:
         """Accelerations and multipliers of a linked scene."""
-        return multipliers.solve(self.schur)
+        return multipliers.solve(self.schur, self.baumgarte)
 
     @cached_property
     def solution(self) -> tuple[tuple[Node, ...], ldl.Pivots]:

@@ -5,7 +5,10 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Any
+
+import numpy as np
 
 from eomgen.algebra.arithmetic import FLOAT, evaluate
 from eomgen.algebra.closed import ClosedForm, Evaluation
@@ -20,8 +23,8 @@ from eomgen.mechanics import constraints, lagrange, minimal, minimal_graph, null
 from eomgen.mechanics.minimal import Elimination, Residual
 from eomgen.mechanics.minimal_graph import Chosen
 from eomgen.model import Model
+from eomgen.wanted import AUTO, Wanted
 
-NAMES = ("auto", "minimal", "nullspace", "multiplier")
 DEAD_POINT_SAMPLES = 200
 LEAST_DISCRIMINANT = 0.05  # of its largest value over the sampled states
 
@@ -84,14 +87,16 @@ def linked(machine: Machine, report: Report) -> Linked:
     return Linked(replace(machine, kept=kept), report)
 
 
-def choose(scene: Linked, wanted: str = "auto") -> Formulation:
+def choose(scene: Linked, wanted: Wanted = AUTO) -> Formulation:
     """The formulation that was asked for, or the first of the ladder that fits.
 
     Raises:
         UsageError: what was asked for does not exist for this scene; it says why.
     """
-    if wanted != "auto":
-        return MAKERS[wanted](scene)
+    if wanted.baumgarte:
+        return _stabilised(scene, wanted.baumgarte)
+    if wanted.formulation != "auto":
+        return MAKERS[wanted.formulation](scene)
     if scene.touches:
         return replace(MAKERS["multiplier"](scene), why="contact and flight, over all coordinates")
     if scene.asks_reactions:
@@ -115,6 +120,14 @@ def available(scene: Linked) -> tuple[Formulation, ...]:
     return tuple(found)
 
 
+def _stabilised(scene: Linked, alpha: Fraction) -> Formulation:
+    """Multipliers with Baumgarte's terms."""
+    if not scene.machine.kept:
+        raise UsageError("--baumgarte: the scene has no bilateral constraint to stabilise")
+    why = f"Baumgarte alpha = {float(alpha):g}/s was asked for: it injects or removes energy"
+    return Formulation("multiplier", why, replace(scene.machine, baumgarte=alpha))
+
+
 def _multiplier(scene: Linked) -> Formulation:
     return Formulation("multiplier", "it was asked for", scene.machine)
 
@@ -131,10 +144,30 @@ def _nullspace(scene: Linked) -> Formulation:
     if scene.report.freedom.singularities:
         raise UsageError("nullspace: the constraints lose rank inside `range`; use multiplier")
     basis = scene.report.freedom.basis
+    _refuse_turning_block(scene)
     at = _arguments(scene, scene.report.initial, basis.independent)
     found = nullspace.derive(scene.model, basis.independent, scene.machine.kept, at)
     why = f"constant rank; the speeds are the rates of {', '.join(basis.independent) or 'nothing'}"
     return Formulation("nullspace", why, Machine(found.kinematics, (), found.pivots))
+
+
+def _refuse_turning_block(scene: Linked) -> None:
+    """Dependent rates cannot be solved for where the determinant of their block changes sign."""
+    names = [c.name for c in scene.model.coordinates]
+    dependent = scene.report.freedom.basis.dependent
+    columns = [names.index(n) for n in dependent]
+    links = linkage.of(scene.machine)
+    kept = [i for i, row in enumerate(links.rows) if row.name in scene.machine.kept]
+    sizes = []
+    for state in (scene.report.initial, *scene.report.states):
+        rows = linkage.jacobian(links, state.state)
+        block = [[float(rows[i][j]) for j in columns] for i in kept]
+        sizes.append(float(np.linalg.det(np.array(block))))
+    if min(sizes) * max(sizes) <= 0:
+        raise UsageError(
+            f"nullspace: W-PIVOT: {', '.join(dependent)} cannot stay dependent over the range; "
+            "give other coordinates `role: free`, narrow the range, or use multiplier"
+        )
 
 
 def _arguments(

@@ -11,12 +11,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from eomgen import compile
-from eomgen.checks import agreement, dimensions, expectations, power, samples
+from eomgen.checks import agreement, dimensions, expectations, mass, power, samples
 from eomgen.mechanics import lagrange
 from eomgen.mechanics.equations import Derivation
 from eomgen.model import Model
 from eomgen.program import Program
 from eomgen.spec import read
+from eomgen.wanted import AUTO, Wanted
 
 if TYPE_CHECKING:
     from eomgen.study_linked import LinkedStudy
@@ -53,24 +54,24 @@ class Study:
         return self.links.scene.report.freedom.degrees_of_freedom
 
 
-def of_text(text: str | bytes, file: str, formulation: str = "auto") -> Study:
-    """The study of a spec; `formulation` matters where it has constraints.
+def of_text(text: str | bytes, file: str, wanted: Wanted = AUTO) -> Study:
+    """The study of a spec; `wanted` matters where it has constraints.
 
     Raises:
         SpecError: the spec has mistakes, all are listed.
         UsageError: the scene cannot be derived as it is described.
         CheckError: something derived would not be true; nothing may be printed.
     """
-    return of_model(read(text, file), formulation)
+    return of_model(read(text, file), wanted)
 
 
-def of_model(model: Model, formulation: str = "auto") -> Study:
+def of_model(model: Model, wanted: Wanted = AUTO) -> Study:
     """The study of a model; raises as `of_text`."""
     if model.constraints:
         # imported where it is needed: the analysis of constraints brings NumPy
         from eomgen import study_linked
 
-        return _linked(study_linked.of_model(model, formulation))
+        return _linked(study_linked.of_model(model, wanted))
     derivation = lagrange.derive(model)
     machine = compile.machine_of(model)
     report = checked(derivation, machine)
@@ -98,6 +99,7 @@ def checked(derivation: Derivation, machine: compile.Machine) -> Report:
         CheckError: one of the checks fails.
     """
     drawn = samples.draw(derivation.model)
+    mass.check(machine, drawn)
     return Report(
         terms=dimensions.check(derivation),
         agreement=agreement.compare(derivation, machine, drawn),

@@ -10,13 +10,14 @@ import sympy as sp
 
 from eomgen import compile, compile_contacts, compile_linked, formulation
 from eomgen.analysis import cards
-from eomgen.checks import agreement, dimensions, expectations, links, power, samples
+from eomgen.checks import agreement, dimensions, expectations, links, mass, power, samples
 from eomgen.compile import Machine
 from eomgen.formulation import Formulation, Linked
 from eomgen.mechanics import lagrange
 from eomgen.mechanics.equations import Derivation
 from eomgen.model import Model
 from eomgen.program import Function, Program, Variable
+from eomgen.wanted import AUTO, Wanted
 
 
 @dataclass(frozen=True)
@@ -43,10 +44,10 @@ class LinkedStudy:
 
     def full_program(self) -> Program:
         """The program with multipliers, which answers for every coordinate."""
-        return program(self.scene, formulation.choose(self.scene, "multiplier"))
+        return program(self.scene, formulation.choose(self.scene, Wanted("multiplier")))
 
 
-def of_model(model: Model, wanted: str = "auto") -> LinkedStudy:
+def of_model(model: Model, wanted: Wanted = AUTO) -> LinkedStudy:
     """The study of a model with constraints.
 
     Raises:
@@ -58,6 +59,7 @@ def of_model(model: Model, wanted: str = "auto") -> LinkedStudy:
     scene = formulation.linked(plain, cards.report(plain))
     everything = formulation.available(scene)
     drawn = samples.draw(model)
+    mass.check(scene.machine, drawn)
     admissible = links.samples_of(scene, scene.report.states, drawn)
     links.rows(derivation, scene.machine, drawn)
     links.formulations_agree(scene, everything, admissible)
@@ -78,7 +80,7 @@ Extra = Callable[[Linked, Formulation], tuple[Function, ...]]
 
 
 def _with_multipliers(scene: Linked, chosen: Formulation) -> tuple[Function, ...]:
-    bilateral = compile_linked.functions(scene.machine) if scene.machine.kept else ()
+    bilateral = compile_linked.functions(chosen.machine) if scene.machine.kept else ()
     return (*bilateral, *compile_contacts.functions(scene.machine))
 
 

@@ -3,7 +3,7 @@
 from functools import cache
 from pathlib import Path
 
-from eomgen import compile, study
+from eomgen import compile, formulation, study, study_linked
 from eomgen.checks import samples
 from eomgen.mechanics import lagrange
 from eomgen.spec import read
@@ -23,6 +23,10 @@ def model_of(name):
     return read(text_of(name), FILES[name].name)
 
 
+FREE = tuple(n for n in SHIPPED if not model_of(n).constraints)  # shipped, nothing is linked
+LINKED = tuple(n for n in SHIPPED if model_of(n).constraints)
+
+
 @cache
 def derivation_of(name):
     return lagrange.derive(model_of(name))
@@ -30,12 +34,17 @@ def derivation_of(name):
 
 @cache
 def machine_of(name):
+    """Over all coordinates, as if nothing were linked."""
     return compile.machine_of(model_of(name))
 
 
 @cache
-def program_of(name):
-    return compile.program(machine_of(name))
+def program_of(name, wanted="auto"):
+    """What `generate` writes; `wanted` is the formulation of a linked scene."""
+    links = study_of(name).links if model_of(name).constraints else None
+    if links is None:
+        return compile.program(machine_of(name))
+    return study_linked.program(links.scene, formulation.choose(links.scene, wanted))
 
 
 @cache

@@ -275,6 +275,11 @@ def forms_of(derivation):
         yield "motion", entry
     for rate in derivation.rates:
         yield "motion", rate
+    yield from forms_of_constraints(derivation)
+
+
+def forms_of_constraints(derivation):
+    """The same of the cards and of the matrix form of a linked scene."""
     for link in derivation.constraints:
         yield "work", link.virtual
         for part in (link.rate, link.gamma, *link.jacobian):

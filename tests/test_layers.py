@@ -23,7 +23,8 @@ ALLOWED: dict[str, set[str]] = {
     "compile_contacts": RECORDS | {"algebra", "mechanics", "compile"},
     "analysis": RECORDS | {"algebra", "mechanics", "compile"},
     "checks": RECORDS | {"algebra", "mechanics", "compile", "analysis", "formulation"},
-    "formulation": RECORDS | {"algebra", "analysis", "compile", "mechanics"},
+    "wanted": {"errors"},
+    "formulation": RECORDS | {"wanted", "algebra", "analysis", "compile", "mechanics"},
     "reactions": RECORDS | {"algebra", "formulation", "mechanics"},
     "study_linked": RECORDS
     | {
@@ -31,11 +32,12 @@ ALLOWED: dict[str, set[str]] = {
         "checks",
         "compile",
         "compile_contacts",
+        "wanted",
         "compile_linked",
         "formulation",
         "mechanics",
     },
-    "study": RECORDS | {"spec", "mechanics", "compile", "checks", "study_linked"},
+    "study": RECORDS | {"wanted", "spec", "mechanics", "compile", "checks", "study_linked"},
     "evaluate_contacts": RECORDS | {"compile_contacts", "evaluate", "mechanics", "states"},
     "evaluate_linked": RECORDS
     | {"compile_contacts", "evaluate_contacts"}
@@ -54,6 +56,7 @@ ALLOWED: dict[str, set[str]] = {
         "__init__",
         "errors",
         "files",
+        "wanted",
         "outputs",
         "study",
         "answers",

@@ -7,13 +7,17 @@ import mpmath
 import pytest
 from scenes import HERE
 
-from eomgen import formulation, study_linked
+from eomgen import study_linked
+from eomgen.algebra.arithmetic import FLOAT
 from eomgen.answers import Question, answers
 from eomgen.checks import links, samples
 from eomgen.errors import CheckError, UsageError
+from eomgen.interpreter import run
 from eomgen.mechanics import multipliers
 from eomgen.spec import read
 from eomgen.study import of_text
+from eomgen.wanted import NAMES, Wanted
+from eomgen.wanted import wanted as wish
 
 FOUR_BAR = """\
 eom: 1
@@ -75,7 +79,7 @@ LINKED = pytest.mark.parametrize("name", SCENES)
 @LINKED
 def test_all_formulations_are_there_and_agree(name):
     found = STUDIES[name].formulations
-    assert found == (("nullspace", "multiplier") if name == "disc" else formulation.NAMES[1:])
+    assert found == (("nullspace", "multiplier") if name == "disc" else NAMES[1:])
 
 
 @LINKED
@@ -187,7 +191,7 @@ REFUSED = [
 @pytest.mark.parametrize(("text", "wanted", "words"), REFUSED)
 def test_a_formulation_that_does_not_exist_says_why(text, wanted, words):
     with pytest.raises(UsageError, match=words):
-        study_linked.of_model(read(text, "a.yaml"), wanted)
+        study_linked.of_model(read(text, "a.yaml"), Wanted(wanted))
 
 
 def test_auto_says_why():
@@ -204,7 +208,53 @@ def test_a_false_number_of_degrees_of_freedom_is_named():
         of_text(FOUR_BAR + "expect: {dof: 2}\n", "a.yaml")
 
 
-@pytest.mark.parametrize("wanted", formulation.NAMES[1:])
+@pytest.mark.parametrize("wanted", NAMES[1:])
 def test_programs_start_on_the_constraints(wanted):
-    program = of_text(FOUR_BAR, "a.yaml", wanted).program
+    program = of_text(FOUR_BAR, "a.yaml", Wanted(wanted)).program
     assert all(v.value is not None for v in (*program.coordinates, *program.speeds))
+
+
+def test_baumgarte_is_exact_on_the_constraints_and_pulls_back_off_them():
+    plain = of_text(PENDULUM, "a.yaml", Wanted("multiplier")).program
+    asked = of_text(PENDULUM, "a.yaml", wish("auto", "10", "0.02")).program
+    on = {"state": [0.3, -0.4, 0.8, 0.6], "parameters": [2.0, 0.5, 9.81]}
+    off = {**on, "state": [0.31, -0.4, 0.8, 0.6]}
+    free, pulled = (run(p.function("accelerations"), on, FLOAT) for p in (plain, asked))
+    assert pulled == pytest.approx(free, rel=1e-12)
+    x, y = run(asked.function("accelerations"), off, FLOAT)
+    # phi'' + 2 alpha phi' + alpha^2 phi = 0
+    second = 2 * (0.31 * x - 0.4 * y + 0.8**2 + 0.6**2)
+    first, zeroth = 2 * (0.31 * 0.8 - 0.4 * 0.6), 0.31**2 + 0.4**2 - 0.25
+    assert second + 20 * first + 100 * zeroth == pytest.approx(0, abs=1e-12)
+
+
+BAD_WISHES = [
+    (("auto", "10", None), "needs --step"),
+    (("auto", None, "0.1"), "needs --step"),
+    (("auto", "10", "0.1"), "at most 2 for the step 0.1"),
+    (("minimal", "1", "0.1"), "not the formulation minimal"),
+    (("auto", "-1", "0.1"), "not a positive decimal"),
+    (("auto", "1/3", "0.1"), "not a positive decimal"),
+    (("auto", "nan", "0.1"), "not a positive decimal"),
+]
+
+
+@pytest.mark.parametrize(("given", "words"), BAD_WISHES)
+def test_baumgarte_is_capped(given, words):
+    with pytest.raises(UsageError, match=words):
+        wish(*given)
+
+
+def test_a_motion_without_inertia_is_named():
+    text = PENDULUM.replace("y: {unit: m, role: linked}", "y: m, z: m").partition("constraints")[0]
+    with pytest.raises(UsageError, match=r"E-MASS: .*the motion z [+-]1 has no inertia"):
+        of_text(text, "a.yaml")
+
+
+def test_a_block_that_turns_singular_is_refused():
+    """A crank of any angle cannot have its slider's rate as the only speed."""
+    text = PENDULUM.replace("y: {unit: m, role: linked}", "y: {unit: m, role: free}")
+    text = text.replace("{x: m,", "{x: {unit: m, role: linked},")
+    text = text.replace("guess: {y: -0.4 m}}", "guess: {y: -0.4 m}}\nrange: {x: [-0.5 m, 0.5 m]}")
+    with pytest.raises(UsageError, match="W-PIVOT: x cannot stay dependent"):
+        study_linked.of_model(read(text, "a.yaml"), Wanted("nullspace"))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 from eomgen.algebra import ldl
 from eomgen.algebra.graph import Node
@@ -48,12 +49,25 @@ def schur(equations: Equations[Node], rows: Sequence[Row[Node]]) -> Schur:
     return Schur(tuple(rows), tuple(columns), matrix, free, pivots)
 
 
-def solve(system: Schur) -> Solution:
-    """Accelerations and multipliers."""
-    right = [-row.gamma - dot(row.jacobian, system.free) for row in system.rows]
+def solve(system: Schur, rate: Fraction = Fraction(0)) -> Solution:
+    """Accelerations and multipliers.
+
+    rate: Baumgarte's alpha [1/s]: J q'' + gamma + 2 alpha phi' + alpha^2 phi = 0, and
+    J q'' + gamma + alpha a = 0 for a rate constraint a. It injects or removes energy.
+    """
+    right = [
+        -(row.gamma + stabilised(row, rate)) - dot(row.jacobian, system.free) for row in system.rows
+    ]
     (multipliers,), pivots = ldl.solve(system.matrix, right)
     accelerations = _corrected(system.free, system.columns, multipliers)
     return Solution(accelerations, tuple(multipliers), system.pivots + pivots)
+
+
+def stabilised(row: Row[Node], rate: Fraction) -> Node:
+    """Baumgarte's terms of a row."""
+    if row.residual is None:
+        return row.rate * rate
+    return row.rate * (2 * rate) + row.residual * rate**2
 
 
 def projected(

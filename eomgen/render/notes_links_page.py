@@ -11,8 +11,10 @@ from eomgen.model import Constraint
 from eomgen.render import arrange, notes_data, tree
 from eomgen.render.arrange import Arranger
 from eomgen.render.notes_links import LinkCard, Links
-from eomgen.render.notes_page import How, Page, formula
+from eomgen.render.notes_page import How, Page, arranged, formula, spelled
 from eomgen.render.tree import Tree
+
+REPEATED = 60  # terms of a rate form or a virtual form that is written out below its constraint
 
 Row = Mapping[str, str]  # `label`: what kind of form; `body`: the equation
 
@@ -39,7 +41,8 @@ def tables(page: Page, links: Links | None) -> dict[str, object]:
 def equations(page: Page) -> tuple[str, ...]:
     """The equation of every bilateral row, as it stands below the equations of motion."""
     rows = page.derivation.constraints
-    return tuple(_zero(page, r.rate if r.residual is None else r.residual) for r in rows)
+    forms = (row.rate if row.residual is None else row.residual for row in rows)
+    return tuple(page.style.equation(formula(page, arrange.motion, f), "0") for f in forms)
 
 
 def _unlinked(page: Page) -> str:
@@ -97,16 +100,14 @@ def _answers(page: Page, card: LinkCard) -> Iterator[str]:
 
 
 def _equations(page: Page, card: LinkCard) -> Iterator[Row]:
-    """Phi = 0, or the gap."""
-    if card.is_bilateral:
-        return _rows(page, "form_equation", arrange.motion, card.residuals)
-    return (
-        {
-            "label": page.words["form_gap"],
-            "body": page.style.at_least(formula(page, arrange.motion, f), "0"),
-        }
-        for f in card.residuals
+    """Phi = 0, or the gap >= 0."""
+    style = page.style
+    label, relation = (
+        ("form_equation", style.equation) if card.is_bilateral else ("form_gap", style.at_least)
     )
+    for form in card.residuals:
+        body = relation(formula(page, arrange.motion, form), "0")
+        yield {"label": page.words[label], "body": body}
 
 
 def _rates(page: Page, card: LinkCard) -> Iterator[Row]:
@@ -126,13 +127,12 @@ def _kind(card: LinkCard, form: str) -> str:
 
 
 def _rows(page: Page, label: str, how: How, forms: Iterable[Form]) -> Iterator[Row]:
-    """Each form = 0 with its label."""
+    """Each form = 0 with its label; a long one only repeats a constraint that is long itself."""
     for form in forms:
-        yield {"label": page.words[label], "body": _zero(page, form, how)}
-
-
-def _zero(page: Page, form: Form, how: How = arrange.motion) -> str:
-    return page.style.equation(formula(page, how, form), "0")
+        found = arranged(page, how, form)
+        size = found if isinstance(found, int) else tree.size(found)
+        shown = spelled(page, size if size > REPEATED else found)
+        yield {"label": page.words[label], "body": page.style.equation(shown, "0")}
 
 
 def _hidden(page: Page, label: str, relation: Form) -> Row:

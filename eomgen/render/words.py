@@ -56,8 +56,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "count_freedom": "degrees of freedom (independent virtual displacements)",
         "count_minimal": "minimal number of coordinates",
         "proof": "The rank was found at {states} admissible states.",
-        "all_holonomic": "Every bilateral constraint is holonomic: the minimal number of coordinates is that"
-        " of the degrees of freedom, {minimal}.",
+        "all_holonomic": "Every bilateral constraint is holonomic: the minimal number of"
+        " coordinates is that of the degrees of freedom, {minimal}.",
         "some_nonholonomic": "A constraint that cannot be integrated restricts the virtual"
         " displacements, not the configurations: the minimal number of coordinates, {minimal}, is"
         " greater than that of the degrees of freedom, {freedom}.",
@@ -140,8 +140,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "multipliers": "Multiplicadores: {symbols}.",
         "redundant": "Redundante, pues se deduce de otras ligaduras: {rows}.",
         "hidden_unknown": "No se ha hallado en forma cerrada su relación entre posiciones.",
-        "contact": "En contacto la holgura es nula, la ligadura actúa como una bilateral y su fuerza"
-        " solo tiende a abrir la holgura: su multiplicador no es negativo. En vuelo la holgura es"
+        "contact": "En contacto la holgura es nula, la ligadura actúa como una bilateral y su"
+        " fuerza solo tiende a abrir la holgura: su multiplicador no es negativo. En vuelo la holgura es"
         " positiva y no hay fuerza.",
         "restitution": "Un choque invierte la velocidad de la holgura y la multiplica por {value}.",
         "friction": "El rozamiento de Coulomb, de coeficiente {value}, se opone al deslizamiento.",
