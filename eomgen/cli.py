@@ -187,23 +187,47 @@ def evaluate(spec: str, state: str | None, format_: str, **wishes: Any) -> None:
 
 @commands.command(
     epilog=_epilog(
-        "eomgen statics four_bar.yaml --input tau=0.2", "eomgen statics truss.yaml --format json"
+        "eomgen statics four_bar.yaml --input tau=0.2",
+        "eomgen statics four_bar.yaml -t latex -o out",
+        "eomgen statics truss.yaml --format json",
     )
 )
 @spec_argument
 @click.option("--input", "inputs", multiple=True, metavar="NAME=VALUE", help="Zero if not given.")
 @click.option("--parameter", "parameters", multiple=True, metavar="NAME=VALUE")
 @click.option("--time", default="0", show_default=True, help="When prescribed motions stand still.")
+@click.option(
+    "-t",
+    "--target",
+    type=click.Choice(["text", "latex"]),
+    help="What to write.  [default: text; with --format json, JSON]",
+)
+@click.option("-o", "--output", default="-", show_default=True, help="Folder; - is stdout.")
+@click.option("--force", is_flag=True, help="Overwrite files that eomgen did not make.")
+@language_option
+@templates_option
 @format_option
-def statics(spec: str, format_: str, **wishes: Any) -> None:
+def statics(spec: str, format_: str, output: str, force: bool, **wishes: Any) -> None:
     """Find the equilibria of SPEC by virtual work, their stability, loads and reactions."""
-    from eomgen.rest import Load, report
+    from eomgen import rest
 
-    load = Load(wishes["inputs"], wishes["parameters"], wishes["time"])
+    is_json = format_ == "json" and wishes["target"] is None
+    if is_json and output != files.STANDARD:
+        raise UsageError("JSON goes to standard output; with --output, say --target text or latex")
+    load = rest.Load(wishes["inputs"], wishes["parameters"], wishes["time"])
+    sheet = rest.Sheet(wishes["target"] or "text", wishes["language"], wishes["templates"])
     text = files.read(spec)
     with _reporting(format_, files.shown(spec)):
-        said = report(text, files.shown(spec), load, format_)
-    click.echo(said)
+        answer = rest.solved(text, files.shown(spec), load)
+    if is_json:
+        click.echo(rest.as_json(answer))
+        return
+    made = rest.rendered(answer, sheet)
+    if output == files.STANDARD:
+        _print_files(made)
+        return
+    for path in files.write_all(Path(output), made, force=force):
+        click.echo(str(path))
 
 
 def _decoded(path: str) -> str:

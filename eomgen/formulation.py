@@ -137,6 +137,8 @@ def _refuse_free(scene: Linked, name: str) -> None:
         raise UsageError(f"{name}: a one-sided constraint needs all coordinates; use multiplier")
     if not scene.machine.kept:
         raise UsageError(f"{name}: no bilateral constraint reduces this scene; use multiplier")
+    if not scene.report.freedom.basis.independent:
+        raise UsageError(f"{name}: the constraints hold everything fast; use multiplier")
 
 
 def _nullspace(scene: Linked) -> Formulation:

@@ -24,7 +24,7 @@ BESIDE_AUTO = (
     "ball_on_turntable-nullspace",
     "block_on_incline-minimal",
     "bricard-multiplier",
-    "dumbbell-nullspace",
+    "chaplygin_sleigh-nullspace",
     "four_bar-minimal",
     "four_bar-nullspace",
     "rolling_disc_tilting-nullspace",

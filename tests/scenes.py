@@ -4,9 +4,10 @@ from functools import cache
 from pathlib import Path
 
 from eomgen import compile, formulation, study, study_linked
-from eomgen.checks import samples
+from eomgen.checks import links, samples
 from eomgen.mechanics import lagrange
 from eomgen.spec import read
+from eomgen.wanted import Wanted
 
 HERE = Path(__file__).parent
 SHIPPED = {p.stem: p for p in sorted((HERE.parent / "specs").glob("*.yaml"))}
@@ -41,15 +42,23 @@ def machine_of(name):
 @cache
 def program_of(name, wanted="auto"):
     """What `generate` writes; `wanted` is the formulation of a linked scene."""
-    links = study_of(name).links if model_of(name).constraints else None
-    if links is None:
+    if name not in LINKED:
         return compile.program(machine_of(name))
-    return study_linked.program(links.scene, formulation.choose(links.scene, wanted))
+    scene = study_of(name).links.scene
+    return study_linked.program(scene, formulation.choose(scene, Wanted(wanted)))
 
 
 @cache
 def samples_of(name):
+    """Random states; those of a linked scene are off its constraints."""
     return samples.draw(model_of(name), seed=7)
+
+
+@cache
+def admissible_of(name):
+    """Random states of a linked scene that satisfy its constraints."""
+    scene = study_of(name).links.scene
+    return links.samples_of(scene, scene.report.states, samples_of(name))
 
 
 @cache

@@ -49,7 +49,7 @@ ALLOWED: dict[str, set[str]] = {
     "evaluate": RECORDS | {"mechanics", "compile", "interpreter", "render", "numerics", "states"},
     "files": {"errors"},
     "shelf": {"errors", "files", "render", "spec"},
-    "rest": RECORDS | {"analysis", "mechanics", "spec", "states"},
+    "rest": RECORDS | {"analysis", "mechanics", "render", "spec", "states"},
     "output_links": {"analysis", "formulation", "render"},
     "outputs": RECORDS | {"output_links", "analysis", "study", "render", "checks", "spec"},
     "cli": {

@@ -128,6 +128,38 @@ def test_on_the_sphere_two_displacements_are_free():
     assert differ(to_sympy(pair[1]), expected) < 1e-13
 
 
+# --- rows 4 to 6: what the constraint carries
+
+
+def test_the_sphere_pushes_with_what_the_path_needs():
+    """2 lambda R^2 = m (g z - v^2)."""
+    found = scene("mass_on_sphere")
+    m, radius, g = found.parameters("m R g")
+    for state in found.states:
+        square = sum(float(r) ** 2 for r in state.rates)
+        expected = m * (g * float(state.coordinates[2]) - square) / (2 * radius**2)
+        assert found.multipliers(state)["sphere"] == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_rod_of_the_dumbbell_holds_the_relative_motion():
+    """2 lambda l^2 = -m_1 m_2/(m_1 + m_2) |v_2 - v_1|^2: gravity does not stretch it."""
+    found = scene("dumbbell")
+    m_1, m_2, size = found.parameters("m_1 m_2 l")
+    for state in found.states:
+        rates = np.array(state.rates, float)
+        square = np.sum((rates[3:] - rates[:3]) ** 2)
+        expected = -m_1 * m_2 / (m_1 + m_2) * square / (2 * size**2)
+        assert found.multipliers(state)["rod"] == pytest.approx(expected, rel=1e-11)
+
+
+def test_the_incline_carries_the_weight_across_it():
+    found = scene("block_on_incline")
+    m, theta, g = found.parameters("m theta g")
+    state = found.report.initial.state
+    # lambda (-tan, 1) is the force, so lambda = N cos
+    assert found.multipliers(state)["incline"] == pytest.approx(m * g * np.cos(theta) ** 2)
+
+
 # --- row 7: it leaves the sphere
 
 

@@ -188,6 +188,17 @@ REFUSED = [
 ]  # fmt: skip
 
 
+FIXED = PENDULUM.replace("  rod:", "  flat: {holonomic: y = 2*x - 1*l}\n  rod:").replace(
+    "x': 0.8 m/s, guess: {y: -0.4 m}", "guess: {y: -0.1 m}"
+)
+
+
+@pytest.mark.parametrize("wanted", ["nullspace", "minimal"])
+def test_what_cannot_move_has_no_speeds(wanted):
+    with pytest.raises(UsageError, match="hold everything fast"):
+        study_linked.of_model(read(FIXED, "a.yaml"), Wanted(wanted))
+
+
 @pytest.mark.parametrize(("text", "wanted", "words"), REFUSED)
 def test_a_formulation_that_does_not_exist_says_why(text, wanted, words):
     with pytest.raises(UsageError, match=words):

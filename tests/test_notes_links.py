@@ -3,16 +3,18 @@
 import random
 import re
 from dataclasses import replace
+from fractions import Fraction
 from functools import cache
 
 import pytest
 import sympy as sp
-from scenes import FILES, derivation_of, machine_of, model_of
+from scenes import FILES, derivation_of, machine_of, model_of, text_of
 from test_notes import compiled
 
-from eomgen import compile, formulation
+from eomgen import compile
 from eomgen.algebra.closed import Evaluation
 from eomgen.analysis import cards
+from eomgen.formulation import Formulation
 from eomgen.mechanics import lagrange
 from eomgen.mechanics.equations import multiplier_name, virtual_name
 from eomgen.output_links import links
@@ -49,8 +51,8 @@ initial: {x: 1 m}
 
 
 def filled(machine, language):
-    scene = formulation.linked(machine, cards.report(machine))
-    return links(scene.report, formulation.choose(scene, "multiplier"), language)
+    chosen = Formulation("multiplier", "it was asked for", machine)
+    return links(cards.report(machine), chosen, language)
 
 
 @cache
@@ -230,6 +232,14 @@ def test_one_multiplier_needs_no_index_and_long_names_give_way_to_numbers():
     assert r"\lambda_{\mathrm{loop},x} a \sin q_1" in page(notes_of("four_bar"))
 
 
+def test_multipliers_stand_in_the_order_of_the_constraints():
+    """The first equation of this scene has the second multiplier alone."""
+    turned = text_of("rolling_disc_upright").replace("  x: m\n  y: m\n", "  y: m\n  x: m\n")
+    model = read(turned, "turned.yaml")
+    assert [c.name for c in model.coordinates[:2]] == ["y", "x"]
+    assert "= −λ_1 R cos θ − λ_2 R sin θ" in page(Notes(lagrange.derive(model)), "text")
+
+
 def test_a_multiplier_takes_no_name_of_the_scene():
     derivation = derivation_of("mass_on_sphere")
     named = [replace(p, name="lambda", symbol=sp.Symbol("lambda", real=True))
@@ -304,6 +314,18 @@ def test_quotients_of_equal_sums_are_cancelled():
     for term in tree.terms_of(shown):
         if isinstance(term, tree.Product):
             assert not set(term.factors) & set(term.divisors)
+
+
+def test_what_differs_in_sign_is_cancelled_with_its_sign():
+    a, b, c = (tree.Symbol(n) for n in "abc")
+    ahead = tree.Sum((a, tree.negated(b)))
+    back = tree.Sum((b, tree.negated(a)))
+    values = {"a": 2.0, "b": 5.0, "c": 7.0}
+    for above, below in ((ahead, back), (back, ahead), (ahead, ahead)):
+        term = tree.product(Fraction(3), (above, c), (below,))
+        shown = notes_links_page.cancelled(term)
+        assert tree.value(shown, values) == tree.value(term, values)
+        assert tree.length(shown) == 1
 
 
 @pytest.mark.parametrize("name", LINKED)

@@ -243,10 +243,10 @@ def _basis(page: Page, links: Links) -> str:
 def displaced(arranger: Arranger, form: Form) -> Tree:
     """A virtual displacement over others, quotients of equal sums cancelled."""
     terms = tree.terms_of(arrange.work(arranger, form))
-    return tree.total(tuple(_cancelled(t) for t in terms))
+    return tree.total(tuple(cancelled(t) for t in terms))
 
 
-def _cancelled(term: Tree) -> Tree:
+def cancelled(term: Tree) -> Tree:
     """The term without the factors that stand on both sides of its fraction, or do but for sign."""
     if not isinstance(term, tree.Product):
         return term

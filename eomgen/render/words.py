@@ -141,8 +141,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "redundant": "Redundante, pues se deduce de otras ligaduras: {rows}.",
         "hidden_unknown": "No se ha hallado en forma cerrada su relación entre posiciones.",
         "contact": "En contacto la holgura es nula, la ligadura actúa como una bilateral y su"
-        " fuerza solo tiende a abrir la holgura: su multiplicador no es negativo. En vuelo la holgura es"
-        " positiva y no hay fuerza.",
+        " fuerza solo tiende a abrir la holgura: su multiplicador no es negativo. En vuelo la"
+        " holgura es positiva y no hay fuerza.",
         "restitution": "Un choque invierte la velocidad de la holgura y la multiplica por {value}.",
         "friction": "El rozamiento de Coulomb, de coeficiente {value}, se opone al deslizamiento.",
         "growth": "Los números son las dimensiones que generan las direcciones admisibles: solas, y"
