@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from eomgen.algebra.assemble import assemble
 from eomgen.algebra.graph import Node
 from eomgen.compile import Machine
-from eomgen.mechanics import newton_euler
+from eomgen.mechanics import newton_euler, newton_euler_unknown
 from eomgen.mechanics.newton_euler import JointReaction
 from eomgen.program import Function
 
@@ -17,12 +17,14 @@ def functions(m: Machine) -> tuple[Function, ...]:
     found = newton_euler.reactions(m)
     if not found:
         return ()
-    names = ", ".join(_named(r) for r in found)
-    forces = f"forces of the parent on the body [N], world axes, one row each: {names}"
+    names, rest = ", ".join(_named(r) for r in found), _left_out(m)
+    forces = f"forces of the parent on the body [N], world axes, one row each: {names}{rest}"
     made = [_function(m, "joint_forces", forces, [r.force for r in found])]
     if found[0].moment:
         points = ", ".join(f"{r.name} about {r.about}" for r in found)
-        moments = f"moments of the parent on the body [N m], world axes, one row each: {points}"
+        moments = (
+            f"moments of the parent on the body [N m], world axes, one row each: {points}{rest}"
+        )
         made.append(_function(m, "joint_moments", moments, [r.moment for r in found]))
     return tuple(made)
 
@@ -31,6 +33,12 @@ def _named(reaction: JointReaction) -> str:
     if not reaction.together_with:
         return reaction.name
     return f"{reaction.name} (with what ties it to {' and '.join(reaction.together_with)})"
+
+
+def _left_out(m: Machine) -> str:
+    """The joints that are not known."""
+    names = ", ".join(left.name for left in newton_euler_unknown.left_out(m))
+    return f"; not determined: {names}" if names else ""
 
 
 def _function(m: Machine, name: str, about: str, rows: Sequence[Sequence[Node]]) -> Function:

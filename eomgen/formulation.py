@@ -22,7 +22,7 @@ from eomgen.errors import UsageError
 from eomgen.mechanics import constraints, lagrange, minimal, minimal_graph, nullspace
 from eomgen.mechanics.minimal import Elimination, Residual
 from eomgen.mechanics.minimal_graph import Chosen
-from eomgen.model import Model
+from eomgen.model import TIME, Model
 from eomgen.wanted import AUTO, Wanted
 
 DEAD_POINT_SAMPLES = 200
@@ -216,7 +216,9 @@ def _eliminations(scene: Linked) -> tuple[Elimination, ...]:
     residuals = [Residual((r.name,), r.residual) for r in rows if r.residual is not None]
     dependent = scene.report.freedom.basis.dependent
     chosen = [c for c in scene.model.coordinates if c.name in dependent]
-    symbols = [c.symbol for c in scene.model.coordinates]
+    # what a coefficient may not hold: it could vanish somewhere, or at some time
+    symbols = [TIME, *(c.symbol for c in scene.model.coordinates)]
+    symbols += [known.symbol for known in scene.model.prescribed]
     found = minimal.eliminations(algebra, residuals, chosen, symbols)
     if found is None:
         raise UsageError("minimal: the constraints cannot be solved in closed form; use nullspace")

@@ -3,6 +3,8 @@
 from functools import cache
 from pathlib import Path
 
+import pytest
+
 from eomgen import compile, formulation, study, study_linked
 from eomgen.checks import links, samples
 from eomgen.mechanics import lagrange
@@ -26,6 +28,15 @@ def model_of(name):
 
 FREE = tuple(n for n in SHIPPED if not model_of(n).constraints)  # shipped, nothing is linked
 LINKED = tuple(n for n in SHIPPED if model_of(n).constraints)
+
+
+SLOW = {"bricard"}  # seconds for each derivation
+
+
+def each(names):
+    """A test for each of these scenes."""
+    marked = [pytest.param(n, marks=pytest.mark.slow) if n in SLOW else n for n in names]
+    return pytest.mark.parametrize("name", marked)
 
 
 @cache

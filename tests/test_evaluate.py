@@ -7,7 +7,7 @@ from typing import Any
 
 import mpmath
 import pytest
-from scenes import LINKED
+from scenes import LINKED, each
 from studies import NAMES, model, study
 
 from eomgen import evaluate, states
@@ -130,7 +130,7 @@ def largest_linked_error(exact: evaluate.Result, found: evaluate.Result) -> floa
 @pytest.mark.parametrize(
     "using", ["interpreter", "python", pytest.param("c", marks=pytest.mark.slow)]
 )
-@pytest.mark.parametrize("name", LINKED)
+@each(LINKED)
 def test_engines_agree_with_50_digits_on_the_constraints(name: str, using: str) -> None:
     exact, found = linked_results(name, "interpreter", 50), linked_results(name, using, 17)
     assert all(a.keys() == b.keys() for a, b in zip(exact, found, strict=True))
@@ -139,7 +139,7 @@ def test_engines_agree_with_50_digits_on_the_constraints(name: str, using: str) 
         assert max(largest_linked_error(a, b) for a, b in pairs) < 1e-12
 
 
-@pytest.mark.parametrize("name", LINKED)
+@each(LINKED)
 def test_residuals_vanish_and_gaps_are_open_at_admissible_states(name: str) -> None:
     for result in linked_results(name, "interpreter", 50):
         with mpmath.workdps(60):
@@ -150,7 +150,7 @@ def test_residuals_vanish_and_gaps_are_open_at_admissible_states(name: str) -> N
         assert residuals or gaps
 
 
-@pytest.mark.parametrize("name", LINKED)
+@each(LINKED)
 def test_accelerations_keep_to_the_constraints(name: str) -> None:
     """J q'' + gamma = 0 for every row, those that were dropped too, from the graph in 50 digits."""
     found = study(name)

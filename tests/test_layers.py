@@ -20,6 +20,7 @@ ALLOWED: dict[str, set[str]] = {
     "interpreter": RECORDS | {"algebra"},
     "compile": RECORDS | {"algebra", "mechanics", "spec"},
     "compile_linked": RECORDS | {"algebra", "mechanics", "compile"},
+    "compile_reactions": RECORDS | {"algebra", "mechanics", "compile"},
     "compile_contacts": RECORDS | {"algebra", "mechanics", "compile"},
     "analysis": RECORDS | {"algebra", "mechanics", "compile"},
     "checks": RECORDS | {"algebra", "mechanics", "compile", "analysis", "formulation"},

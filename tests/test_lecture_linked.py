@@ -27,7 +27,7 @@ ANSWERS = {
     4: {"incline": (True, True, True)},
     5: {"sphere": (True, True, True)},
     6: {"rod": (True, True, True)},
-    7: {"outside": (False, True, True)},
+    7: {"outside": (False, True, False)},  # "holonomic: cannot be unilateral"
     8: {"hoop": (True, True, True), "plane": (True, True, True)},
     9: {"sphere": (True, True, True), "turning": (True, False, True)},
     10: {"no_slip_x": (True, True, False), "no_slip_y": (True, True, False)},

@@ -161,12 +161,43 @@ bodies:
     assert names(scene) == ["world/slider"]
 
 
+@pytest.mark.slow
 def test_dependent_constraints_leave_their_joints_out():
     found = reasons(scene_of("bricard"))
     assert set(found) == {f"{a}/{b}" for a, b in zip(
         ("world", "bar_1", "bar_2", "bar_3", "bar_4"),
         ("bar_1", "bar_2", "bar_3", "bar_4", "bar_5"), strict=True)}  # fmt: skip
     assert all("depends on others" in b for because in found.values() for b in because)
+
+
+@pytest.mark.parametrize("name", ["block_with_friction", "bouncing_ball", "rope"])
+def test_a_contact_leaves_its_joint_out(name):
+    assert names(scene_of(name)) == []
+    assert len(reasons(scene_of(name))) == 1
+
+
+def test_what_hangs_on_a_point_of_a_body_is_about_that_point():
+    found = {r.on: r.about for r in newton_euler.reactions(machine_of("flyball_governor"))}
+    assert found["right_ball"] == "right_end"
+    assert found["right_rod"] == "origin of right_rod"
+    assert found["slider"] == "mass centre of slider"
+
+
+DRIVEN = """\
+coordinates: {s: m, phi: rad}
+points:
+  A: "[s, 0]"
+  B: A + l*[sin(phi), -cos(phi)]
+bodies: {slider: {mass: m, at: A}, bob: {mass: m, at: B}}
+constraints: {drive: {holonomic: phi = k/m*l*t}}
+initial: {s: 0, s': 0}
+"""
+
+
+def test_a_relation_below_is_named_above():
+    text = HEAD.replace("k: 3 N/m", "k: 3 kg/(m*s)") + DRIVEN
+    found = {r.on: r.together_with for r in newton_euler.reactions(of_text(text))}
+    assert found == {"slider": ("bob",), "bob": ()}
 
 
 def test_bodies_that_a_relation_ties_are_named():
@@ -196,6 +227,47 @@ def test_functions_are_the_reactions(name):
             assert all(r.name in functions[key].about for r in found)
 
 
+def test_the_functions_say_what_is_not_determined():
+    forces, moments = compile_reactions.functions(machine_of("slider_spring_pendulum"))
+    assert forces.about.endswith(": slider/bob; not determined: world/slider")
+    assert moments.about.endswith(": slider/bob about A; not determined: world/slider")
+
+
 def test_no_functions_where_nothing_is_known():
     assert compile_reactions.functions(machine_of("central_force")) == ()
     assert compile_reactions.functions(machine_of("half_car")) == ()
+
+
+def test_the_first_end_of_a_rod_belongs_to_it_where_it_moves():
+    scene = of_text(
+        HEAD
+        + """\
+coordinates: {s: m, phi: rad}
+points: {A: "[s, 0]", B: "A + l*[sin(phi), -cos(phi)]"}
+bodies: {rod: {rod: [A, B], mass: m}}
+forces: [{on: A, force: [k*l, 0]}]
+"""
+    )
+    assert newton_euler_tree.carrier(scene.model, "A") == newton_euler_tree.Carrier("rod")
+    assert names(scene) == ["world/rod"]
+
+
+def test_a_coordinate_belongs_to_the_first_joint_that_it_moves():
+    own = {
+        j.body: {s.name for s in j.own} for j in newton_euler_tree.joints(model_of("snakeboard"))
+    }
+    assert own == {
+        "board": {"x", "y", "theta"}, "rotor": {"psi"}, "back": {"phi_b"}, "front": {"phi_f"},
+    }  # fmt: skip
+
+
+def test_a_moment_in_the_plane_has_no_axes():
+    scene = of_text(
+        HEAD
+        + """\
+coordinates: {phi: rad}
+bodies: {bar: {mass: m, inertia: m*l^2, frame: {angle: phi}, com: [l, 0]}}
+moments: [{on: bar, in: bar, moment: k*l^2}]
+"""
+    )
+    assert names(scene) == ["world/bar"]

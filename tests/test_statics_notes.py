@@ -16,8 +16,10 @@ from eomgen import rest
 from eomgen.analysis import equilibrium
 from eomgen.analysis.equilibrium_equations import FRICTION, FROZEN, MOVING
 from eomgen.analysis.equilibrium_stability import RIGID
-from eomgen.render import statics_tables, statics_words
+from eomgen.render import statics_words
 from eomgen.render.statics import latex_context, text_context
+from eomgen.render.targets import TARGETS, render
+from eomgen.render.templating import environment
 from eomgen.spec import read
 
 LOADS = {"four_bar": ("tau=0.2",)}
@@ -34,16 +36,16 @@ def page(name, target="text", language="en"):
 
 
 @cache
-def answer(name):
-    """One of the scenes of the equilibrium tests, with all inputs zero."""
+def pushed(name, **inputs):
+    """One of the scenes of the equilibrium tests; inputs that are not given are zero."""
     model = scene(name)
     parameters = {p.name: 1 for p in model.parameters if p.value is None and p.formula is None}
-    found = equilibrium.solve(model, parameters=parameters)
+    found = equilibrium.solve(model, inputs, parameters=parameters)
     return rest.Solved(model, equilibrium.equations(model), found)
 
 
 def text_of_scene(name, target="text", language="en"):
-    (text,) = rest.rendered(answer(name), rest.Sheet(target, language)).values()
+    (text,) = rest.rendered(pushed(name), rest.Sheet(target, language)).values()
     return text
 
 
@@ -85,7 +87,7 @@ In equilibrium the virtual work of all applied forces vanishes, whatever the vir
 \delta W = \sum_j Q_j\,\delta q_j = 0
 \]
 \begin{align*}
-\delta W &= -m g l \sin\varphi \, \delta \varphi
+\delta W &= -m g l \sin\varphi \,\delta \varphi
 \end{align*}
 \section*{Generalized forces}
 \vspace{-\baselineskip}
@@ -101,7 +103,7 @@ Q_{\varphi} &= -m g l \sin\varphi
 2 equilibria were found.
 \begin{center}
 \begin{tabular}{rrrl}
-no. & $\varphi$ [$\mathrm{rad}$] & $\varphi$ [$\mathrm{{}^\circ}$] & stability \\
+no. & $\varphi$ [$\mathrm{rad}$] & $\varphi$ [$\text{\ensuremath{^\circ}}$] & stability \\
 \hline\noalign{\smallskip}
 $1$ & $0$ & $0$ & stable \\
 $2$ & $3.141593$ & $180$ & unstable \\
@@ -147,7 +149,7 @@ def test_multipliers_and_reactions_beside_the_constraints():
     assert "a cos q1 − e + b cos q2 − c cos q3 = 0" in equations
     assert "Q_j + Σ λ_k J_kj = 0" in equations
     assert "a (λ_loop_y cos q1 − λ_loop_x sin q1) = 0" in equations
-    assert "At τ = 0.2 N*m: 4 equilibria were found." in text
+    assert "Given: τ = 0.2 N*m. 4 equilibria were found." in text
     (head,) = (line for line in text.splitlines() if "F_pin_C,x [N]" in line)
     assert "λ_loop_x" in head
     for e in solved("four_bar").found.found:
@@ -180,7 +182,8 @@ def test_a_gap_is_shown_and_what_touches():
 
 
 def test_a_constraint_between_rates_shows_its_virtual_form():
-    text = text_of_scene("skate")
+    record = rest.notes(pushed("skate", F=7), "en")
+    (text,) = render(record, TARGETS["statics-text"], environment()).values()
     assert "sin θ δx − cos θ δy = 0" in text
     assert "Nothing depends on x, y: any value is one of equilibrium." in text
     assert re.search(r"1 +any +any +-?1\.570796327 +-?90 +undecided$", text, re.MULTILINE)
@@ -194,12 +197,12 @@ def test_a_family_is_not_called_isolated_nor_complete():
 
 
 def test_the_time_is_said_where_something_moves():
-    assert "At t = 0 s: " in text_of_scene("shaken")
+    assert "Given: t = 0 s. " in text_of_scene("shaken")
     assert "t = 0" not in text_of_scene("pendulum")
 
 
 def test_many_columns_and_many_rows_become_several_tables():
-    record = rest.notes(answer("double"), "en")
+    record = rest.notes(pushed("double"), "en")
     many = replace(record, equilibria=record.equilibria * 10)
     parts = latex_context(many)["tables"]
     assert [len(part["rows"]) for part in parts] == [30, 10]
@@ -230,8 +233,8 @@ SAID = (
     "touching a, b: exact elimination: of 8 complex solutions 4 are equilibria, 2 of these outside"
     " the range; irrational constants were rounded to 30 digits",
     "every position is an equilibrium",
-    "interval arithmetic: every root within 3.5 (10 times the size of the scene) is among these, but"
-    " roots closer than 1e-09 of the range are not told apart near 0.1, 0.2",
+    "interval arithmetic: every root within 3.5 (10 times the size of the scene) is among these,"
+    " but roots closer than 1e-09 of the range are not told apart near 0.1, 0.2",
     "no polynomials: phi stands inside and outside of sine and cosine; searched by Newton's method"
     " from 400 starts within 3.5 (10 times the size of the scene); each root was found at least 3"
     " times, the 390 starts after start 10 found no new one, 5 led to none, 2 were found outside"
@@ -240,6 +243,12 @@ SAID = (
     " starts; no root was found; roots may have been missed",
     "undecided by energy: the applied forces have no potential; linearize instead",
     "undecided by energy: stop touches without a force",
+    "undecided by energy: constraints between rates are no constraints on positions",
+    "undecided by energy: the constraints lose rank here",
+    "too many complex solutions for exact elimination",
+    "no polynomials: the function exp is no polynomial",
+    "inputs not given are zero: tau, F",
+    "unilateral constraints were tried one at a time, not together",
 )
 ENGLISH = re.compile(
     r"\b(the|of|is|are|and|at|was|were|found|times|no polynomials|by|stands|roots?|to|here|along)\b"
@@ -250,7 +259,8 @@ ENGLISH = re.compile(
 def test_what_the_solver_says_is_said_in_spanish(sentence):
     shown = statics_words.translated(sentence, "es")
     assert not ENGLISH.search(shown)
-    assert re.findall(r"[\d.]*\d", shown) == re.findall(r"[\d.]*\d", sentence)
+    numbers = (re.findall(r"[\d.]*\d", said) for said in (shown, sentence))
+    assert sorted(next(numbers)) == sorted(next(numbers))
     assert statics_words.translated(sentence, "en") == sentence
 
 
@@ -284,9 +294,3 @@ def test_the_notes_compile_and_fit_the_page(name, language, tmp_path):
     assert "Overfull" not in log
     assert "Missing character" not in log
     assert "LaTeX Warning" not in log
-
-
-def test_tables_know_only_what_the_solver_says():
-    verdicts = {e.stability.verdict for n in ("torsion", "skate") for e in answer(n).found.found}
-    assert verdicts <= statics_words.WORDS["en"].keys()
-    assert statics_tables.TEXT.digits == 10

@@ -100,7 +100,8 @@ def _card(
         rows=names,
         is_bilateral=constraint.kind != "unilateral",
         is_scleronomic=not any(depends_on_time(model, f) for f in timed),
-        is_holonomic=all(v.is_integrable for v in verdicts),
+        # a one-sided relation eliminates no coordinate: the lecture does not call it holonomic
+        is_holonomic=constraint.kind != "unilateral" and all(v.is_integrable for v in verdicts),
         residuals=residuals,
         rates=tuple(r.rate for r in rows),
         virtual=tuple(virtual_form(model, r) for r in rows),

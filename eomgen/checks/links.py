@@ -78,7 +78,7 @@ def formulations_agree(
     for i in range(samples.count):
         found = {f.name: accelerations(scene, f, samples, i) for f in formulations}
         reference = found.pop("multiplier")
-        scale = max(abs(v) for v in reference.values()) or 1.0
+        scale = max(*map(abs, reference.values()), _free_size(scene, samples, i)) or 1.0
         for name, values in found.items():
             error = max(abs(v - reference[q]) for q, v in values.items()) / scale
             worst = max(worst, error)
@@ -88,6 +88,13 @@ def formulations_agree(
                     f"error {error:.1e}: this is a defect of eomgen, nothing was written"
                 )
     return worst
+
+
+def _free_size(scene: Linked, samples: Samples, index: int) -> float:
+    """How fast the scene would accelerate without its constraints: the size of what cancels."""
+    state = [column[index] for column in samples.state]
+    free = _at(scene.machine, samples, index, state).nodes(scene.machine.schur.free)
+    return max(abs(float(v)) for v in free)
 
 
 def accelerations(

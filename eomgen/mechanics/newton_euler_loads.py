@@ -165,9 +165,9 @@ def unplaced(scene: Scene) -> Iterator[Unplaced]:
     elements: tuple[Element, ...] = (*model.springs, *model.dampers)
     for element in elements:
         if element.along is not None:
-            why = f"{element.name} acts along {element.along}"
             used = _coordinates(model, element.along)
-            yield Unplaced(element.name, why, used, along=True)
+            names = ", ".join(c.name for c in model.coordinates if c.symbol in used)
+            yield Unplaced(element.name, f"{element.name} acts along {names}", used, along=True)
     for letter, term in zip("TVD", _energies(model), strict=True):
         if term != 0:
             yield Unplaced(letter, f"{letter} is given as a formula", _coordinates(model, term))

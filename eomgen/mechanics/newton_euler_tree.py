@@ -111,7 +111,9 @@ def _trace(model: Model, place: Place, body: Body | None) -> Trace:
     for _, point in place.points:
         holder = _holder(model, point, body)
         if holder is None:
-            found += _trace(model, _places(model)[point], body)
+            below = _trace(model, _places(model)[point], body)
+            ends = tuple((end, at or point) for end, at in below.ends)
+            found += Trace(below.symbols, ends)
         else:
             found += Trace(ends=((holder, point),))
     return found
@@ -209,13 +211,25 @@ def reached(model: Model, point: str) -> tuple[frozenset[sp.Symbol], tuple[str, 
 
 
 def companions(model: Model, tree: Sequence[Joint], joint: Joint) -> tuple[str, ...]:
-    """Other bodies that the same coordinate, or one relation between coordinates, moves too."""
-    coordinates = joint.own
-    for constraint in model.constraints:
-        related = related_by(model, constraint)
-        if constraint.kind != "unilateral" and related & joint.own:
-            coordinates |= related
-    return tuple(j.body for j in tree if j is not joint and j.own & coordinates)
+    """Other bodies that the same coordinate, or a relation between coordinates, ties to this one.
+
+    A relation on coordinates that do not count against the parent is felt by all joints above.
+    """
+    relations = [related_by(model, c) for c in model.constraints if c.kind != "unilateral"]
+    near = joint.own.union(*(r for r in relations if r & joint.own))
+    parents = {j.body: j.parent for j in tree}
+    return tuple(
+        j.body
+        for j in tree
+        if j is not joint
+        and (
+            j.own & near or (_is_felt_above(j, relations) and joint.body in above(parents, j.body))
+        )
+    )
+
+
+def _is_felt_above(joint: Joint, relations: Sequence[frozenset[sp.Symbol]]) -> bool:
+    return not joint.is_relative and any(r & joint.own for r in relations)
 
 
 def related_by(model: Model, constraint: Constraint) -> frozenset[sp.Symbol]:

@@ -37,7 +37,12 @@ def name_of(joint: Joint) -> str:
 def left_out(scene: Scene) -> tuple[LeftOut, ...]:
     """The joints whose reaction is not known, parents first."""
     tree = newton_euler_tree.joints(scene.kinematics.model)
-    causes = [*_loads(scene, tree), *_loops(tree), *_dependent(scene, tree)]
+    causes = [
+        *_loads(scene, tree),
+        *_loops(tree),
+        *_dependent(scene, tree),
+        *_contacts(scene, tree),
+    ]
     found = []
     for joint in tree:
         because = tuple(dict.fromkeys(c.why for c in causes if joint.body in c.bodies))
@@ -102,6 +107,17 @@ def _dependent(scene: Scene, tree: Sequence[Joint]) -> Iterator[_Cause]:
             wider = reached.union(*(u for u in used.values() if u & reached))
         touched = _touched(tree, Unplaced(name, "", reached))
         yield _Cause(f"the constraint {name} depends on others", touched)
+
+
+def _contacts(scene: Scene, tree: Sequence[Joint]) -> Iterator[_Cause]:
+    """What presses or rubs in some modes only: the accelerations here are those without it."""
+    model = scene.kinematics.model
+    for constraint in model.constraints:
+        rubs = constraint.friction is not None and constraint.friction != 0
+        if constraint.kind == "unilateral" or rubs:
+            related = newton_euler_tree.related_by(model, constraint)
+            touched = _touched(tree, Unplaced(constraint.name, "", related))
+            yield _Cause(f"the force of {constraint.name} depends on the contact", touched)
 
 
 def _coordinates(scene: Scene, jacobian: Sequence[object]) -> frozenset[sp.Symbol]:

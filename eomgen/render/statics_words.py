@@ -29,7 +29,7 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "gaps": "A unilateral constraint that touches counts as a bilateral one whose multiplier is"
         " not negative; one that does not touch exerts no force:",
         "equilibria": "Equilibria",
-        "at": "At",
+        "at": "Given",
         "found": "{count} equilibria were found.",
         "found_one": "One equilibrium was found.",
         "found_none": "No equilibrium was found.",
@@ -72,7 +72,7 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "gaps": "Una ligadura unilateral en contacto cuenta como una bilateral cuyo multiplicador"
         " no es negativo; sin contacto no ejerce fuerza:",
         "equilibria": "Posiciones de equilibrio",
-        "at": "Con",
+        "at": "Datos",
         "found": "Se han hallado {count} posiciones de equilibrio.",
         "found_one": "Se ha hallado una posición de equilibrio.",
         "found_none": "No se ha hallado ninguna posición de equilibrio.",
@@ -123,7 +123,7 @@ SPANISH: tuple[tuple[str, str], ...] = (
     ),
     (
         r"of (?P<count>\d+) complex solutions (?P<real>\d+) are equilibria",
-        "de las soluciones complejas, que son {count}, son de equilibrio {real}",
+        "{real} de las {count} soluciones complejas son de equilibrio",
     ),
     (
         r"irrational constants were rounded to (?P<count>\d+) digits",
