@@ -166,6 +166,7 @@ def check(specs: tuple[str, ...], format_: str) -> None:
     help="What computes.",
 )
 @click.option("--project", is_flag=True, help="Move states to the nearest admissible ones.")
+@click.option("--joints", is_flag=True, help="Add the forces between components (Newton-Euler).")
 @format_option
 def evaluate(spec: str, state: str | None, format_: str, **wishes: Any) -> None:
     """Compute accelerations, energies, forces and outputs of SPEC at given states, as JSON.

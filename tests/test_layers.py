@@ -39,11 +39,13 @@ ALLOWED: dict[str, set[str]] = {
         "mechanics",
     },
     "study": RECORDS | {"wanted", "spec", "mechanics", "compile", "checks", "study_linked"},
+    "evaluate_joints": RECORDS
+    | {"compile", "compile_reactions", "evaluate", "mechanics", "states"},
     "evaluate_contacts": RECORDS | {"compile_contacts", "evaluate", "mechanics", "states"},
     "evaluate_linked": RECORDS
     | {"compile_contacts", "evaluate_contacts"}
     | {"algebra", "evaluate", "interpreter", "reactions", "states", "study_linked"},
-    "answers": RECORDS | {"evaluate", "evaluate_linked", "states", "study"},
+    "answers": RECORDS | {"evaluate_joints", "evaluate", "evaluate_linked", "states", "study"},
     "render": RECORDS | {"algebra", "mechanics"},
     "numerics": RECORDS | {"render", "interpreter"},
     "states": RECORDS | {"mechanics"},

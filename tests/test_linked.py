@@ -134,6 +134,19 @@ def test_rod_force_is_the_tension_of_the_pendulum():
     assert force["y"] == pytest.approx(-tension * y / 0.5, rel=1e-12)
 
 
+def test_joint_of_the_free_pendulum_is_the_rod_force():
+    free = of_text((HERE.parent / "specs" / "simple_pendulum.yaml").read_bytes(), "a.yaml")
+    (found,) = answers(free, "{}", Question(joints=True))
+    x, y = found["joints"]["world/bob"]["force"]
+    assert (x**2 + y**2) ** 0.5 == pytest.approx(0.5 * 9.81 * 0.5, rel=1e-12)
+    assert x / y == pytest.approx(-(3**0.5), rel=1e-12)
+
+
+def test_joints_need_admissible_states():
+    with pytest.raises(UsageError, match="without --project"):
+        ask("pendulum", joints=True, project=True)
+
+
 def test_pin_force_moves_the_rocker():
     """The opposite of the pin force on C turns the rocker about D as Euler says."""
     (found,) = ask("four_bar", FREE)
