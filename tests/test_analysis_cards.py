@@ -32,7 +32,7 @@ ANSWERS = {
     4: {"incline": (True, True, True)},
     5: {"sphere": (True, True, True)},
     6: {"rod": (True, True, True)},
-    7: {"outside": (False, True, True)},
+    7: {"outside": (False, True, False)},
     8: {"hoop": (True, True, True), "plane": (True, True, True)},
     9: {"sphere": (True, True, True), "turning": (True, False, True)},
     10: {"rolling": (True, True, False)},

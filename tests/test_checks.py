@@ -16,7 +16,6 @@ from eomgen.mechanics import efforts, lagrange
 from eomgen.spec import read
 from eomgen.study import of_text
 
-
 STIFF = {"flyball_governor": 2e-12}  # its springs cancel: 8e5 N/m
 
 

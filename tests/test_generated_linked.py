@@ -1,4 +1,4 @@
-"""The Python that is written for linked scenes, in motion: on its constraints, true to its energy."""
+"""The Python of linked scenes in motion: on its constraints, true to its energy."""
 
 from functools import cache
 
