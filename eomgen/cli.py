@@ -16,6 +16,7 @@ import click
 
 from eomgen import __version__, files
 from eomgen.errors import EomgenError, SpecError, UsageError
+from eomgen.wanted import AUTO, NAMES, Wanted, wanted
 
 if TYPE_CHECKING:
     from eomgen.study import Study
@@ -53,6 +54,15 @@ templates_option = click.option(
 )
 
 
+formulation_option = click.option(
+    "--formulation",
+    type=click.Choice(NAMES),
+    default="auto",
+    show_default=True,
+    help="Equations of a scene with constraints.",
+)
+
+
 @click.group(context_settings=SETTINGS, epilog=EXAMPLES)
 @click.version_option(__version__, prog_name="eomgen")
 def commands() -> None:
@@ -64,13 +74,14 @@ def commands() -> None:
 @click.option("--steps", is_flag=True, help="Show every partial derivative.")
 @language_option
 @templates_option
+@formulation_option
 @format_option
-def derive(spec: str, steps: bool, language: str, templates: Path | None, format_: str) -> None:
+def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
     """Show the equations of motion of SPEC in the terminal."""
     from eomgen.outputs import Wish, rendered
 
-    wish = Wish(("text",), language, templates, steps)
-    (text,) = rendered(_study(spec, format_), wish).values()
+    wish = Wish(("text",), wishes["language"], wishes["templates"], wishes["steps"])
+    (text,) = rendered(_study(spec, format_, Wanted(formulation)), wish).values()
     click.echo(text, nl=False)
 
 
@@ -96,6 +107,9 @@ def derive(spec: str, steps: bool, language: str, templates: Path | None, format
 @click.option("--force", is_flag=True, help="Overwrite files that eomgen did not make.")
 @language_option
 @templates_option
+@formulation_option
+@click.option("--baumgarte", metavar="ALPHA", help="Stabilise multipliers [1/s], only if asked.")
+@click.option("--step", metavar="H", help="The step [s] that caps ALPHA at 0.2/H.")
 @format_option
 def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -> None:
     """Write lecture notes, C and Python for SPEC."""
@@ -103,7 +117,9 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
 
     targets = wishes["targets"] or ("latex", "c", "python")
     wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"])
-    made = rendered(_study(spec, format_), wish)
+    with _reporting(format_, files.shown(spec)):
+        choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
+    made = rendered(_study(spec, format_, choice), wish)
     if output == files.STANDARD:
         _print_files(made)
         return
@@ -149,26 +165,70 @@ def check(specs: tuple[str, ...], format_: str) -> None:
     show_default=True,
     help="What computes.",
 )
+@click.option("--project", is_flag=True, help="Move states to the nearest admissible ones.")
+@click.option("--joints", is_flag=True, help="Add the forces between components (Newton-Euler).")
 @format_option
-def evaluate(spec: str, state: str | None, digits: int, using: str, format_: str) -> None:
+def evaluate(spec: str, state: str | None, format_: str, **wishes: Any) -> None:
     """Compute accelerations, energies, forces and outputs of SPEC at given states, as JSON.
 
     Without --state the spec's initial values are the state.
     """
     import json
 
-    from eomgen import states
-    from eomgen.evaluate import depends_on_time
-    from eomgen.evaluate import evaluate as values
+    from eomgen.answers import Question, answers
 
     if spec == state == files.STANDARD:
         raise UsageError("the spec and the state cannot both come from standard input")
     study = _study(spec, format_)
     with _reporting(format_, files.shown(spec if state is None else state)):
         text = "{}" if state is None else _decoded(state)
-        found = states.read(text, study.model, needs_time=depends_on_time(study.program))
-        results = values(study.machine, study.program, found, using, digits)
+        results = answers(study, text, Question(**wishes))
     click.echo(json.dumps(results, indent=2, ensure_ascii=False))
+
+
+@commands.command(
+    epilog=_epilog(
+        "eomgen statics four_bar.yaml --input tau=0.2",
+        "eomgen statics four_bar.yaml -t latex -o out",
+        "eomgen statics truss.yaml --format json",
+    )
+)
+@spec_argument
+@click.option("--input", "inputs", multiple=True, metavar="NAME=VALUE", help="Zero if not given.")
+@click.option("--parameter", "parameters", multiple=True, metavar="NAME=VALUE")
+@click.option("--time", default="0", show_default=True, help="When prescribed motions stand still.")
+@click.option(
+    "-t",
+    "--target",
+    type=click.Choice(["text", "latex"]),
+    help="What to write.  [default: text; with --format json, JSON]",
+)
+@click.option("-o", "--output", default="-", show_default=True, help="Folder; - is stdout.")
+@click.option("--force", is_flag=True, help="Overwrite files that eomgen did not make.")
+@language_option
+@templates_option
+@format_option
+def statics(spec: str, format_: str, output: str, force: bool, **wishes: Any) -> None:
+    """Find the equilibria of SPEC by virtual work, their stability, loads and reactions."""
+    from eomgen import rest
+
+    is_json = format_ == "json" and wishes["target"] is None
+    if is_json and output != files.STANDARD:
+        raise UsageError("JSON goes to standard output; with --output, say --target text or latex")
+    load = rest.Load(wishes["inputs"], wishes["parameters"], wishes["time"])
+    sheet = rest.Sheet(wishes["target"] or "text", wishes["language"], wishes["templates"])
+    text = files.read(spec)
+    with _reporting(format_, files.shown(spec)):
+        answer = rest.solved(text, files.shown(spec), load)
+    if is_json:
+        click.echo(rest.as_json(answer))
+        return
+    made = rest.rendered(answer, sheet)
+    if output == files.STANDARD:
+        _print_files(made)
+        return
+    for path in files.write_all(Path(output), made, force=force):
+        click.echo(str(path))
 
 
 def _decoded(path: str) -> str:
@@ -238,10 +298,10 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
         click.echo(str(path))
 
 
-def _study(spec: str, format_: str) -> Study:
+def _study(spec: str, format_: str, choice: Wanted = AUTO) -> Study:
     """The study of a spec; its faults are shown as asked and end the command."""
     with _reporting(format_, files.shown(spec)):
-        return _derived(spec)
+        return _derived(spec, choice)
 
 
 @contextmanager
@@ -254,11 +314,11 @@ def _reporting(format_: str, source: str) -> Iterator[None]:
         sys.exit(error.exit_code)
 
 
-def _derived(spec: str) -> Study:
+def _derived(spec: str, choice: Wanted = AUTO) -> Study:
     text = files.read(spec)
     from eomgen import study
 
-    return study.of_text(text, files.shown(spec))
+    return study.of_text(text, files.shown(spec), choice)
 
 
 def _complain(error: EomgenError, format_: str, source: str, *, err: bool = True) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 
 import sympy as sp
@@ -13,13 +14,21 @@ from eomgen.algebra import ldl
 from eomgen.algebra.assemble import assemble
 from eomgen.algebra.graph import Node
 from eomgen.dimension import NONE, TIME, Dimension
-from eomgen.mechanics import energies, machine, speeds, virtual_work
+from eomgen.mechanics import (
+    constraints,
+    energies,
+    machine,
+    multipliers,
+    speeds,
+    virtual_work,
+)
+from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.equations import Contribution, Equations
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.vectors import dot
 from eomgen.model import TIME as TIME_SYMBOL
 from eomgen.model import Coordinate, Description, Model, Prescribed, Speed
-from eomgen.program import Function, Program, Variable
+from eomgen.program import Function, Program, Read, Variable
 from eomgen.spec.units import si_unit
 
 LARGEST_UNROLLED = 12  # equations; above, L D L' runs in a loop
@@ -30,11 +39,20 @@ class Machine:
     """A scene on the graph with its equations, each derived once when first asked for."""
 
     kinematics: Kinematics[Node]
+    kept: tuple[str, ...] = ()  # names of the independent rows, with a multiplier each
+    pivots: ldl.Pivots = ()  # that the rates divide by
+    baumgarte: Fraction = Fraction(0)  # alpha [1/s] of stabilised rows; zero: none
 
     @property
     def model(self) -> Model:
         """The scene."""
         return self.kinematics.model
+
+    @cached_property
+    def leaves(self) -> tuple[Node, ...]:
+        """The arguments of the program, as nodes."""
+        bound = self.kinematics.algebra.bindings.values()
+        return tuple(node for node in dict.fromkeys(bound) if isinstance(node.datum, Read))
 
     @cached_property
     def equations(self) -> Equations[Node]:
@@ -53,14 +71,31 @@ class Machine:
         return sum((s.value for s in shares), self.kinematics.algebra.number(0))
 
     @cached_property
+    def rows(self) -> tuple[Row[Node], ...]:
+        """Every row of the bilateral constraints."""
+        return constraints.rows(self.kinematics)
+
+    @cached_property
+    def schur(self) -> multipliers.Schur:
+        """The Schur complement of the independent rows."""
+        return multipliers.schur(self.equations, [r for r in self.rows if r.name in self.kept])
+
+    @cached_property
+    def linked(self) -> multipliers.Solution:
+        """Accelerations and multipliers of a linked scene."""
+        return multipliers.solve(self.schur, self.baumgarte)
+
+    @cached_property
     def solution(self) -> tuple[tuple[Node, ...], ldl.Pivots]:
-        """u' = M^-1 (Q - h), unrolled up to `LARGEST_UNROLLED` equations."""
+        """u' = M^-1 (Q - h), unrolled up to `LARGEST_UNROLLED`; with multipliers of kept rows."""
+        if self.kept:
+            return self.linked.accelerations, self.linked.pivots
         matrix, bias = self.equations.mass_matrix, self.equations.bias
         right = [q - h for q, h in zip(self.equations.generalized_forces, bias, strict=True)]
         if len(right) > LARGEST_UNROLLED:
-            return tuple(ldl.solve_in_loop(matrix, right)), ()
+            return tuple(ldl.solve_in_loop(matrix, right)), self.pivots
         (solution,), pivots = ldl.solve(matrix, right)
-        return tuple(solution), pivots
+        return tuple(solution), self.pivots + pivots
 
     @cached_property
     def rates(self) -> tuple[Node, ...]:

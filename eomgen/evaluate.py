@@ -65,13 +65,13 @@ def _precise(source: Program, model: Model, digits: int) -> Engine:
 
     def call(name: str, state: State) -> list[Any]:
         with mpmath.workdps(working + 5):
-            arguments = _arguments(state, model, convert)
-        return interpreter.run(source.function(name), arguments, arithmetic)
+            given = arguments(state, model, convert)
+        return interpreter.run(source.function(name), given, arithmetic)
 
     return Engine(call, lambda value: mpmath.nstr(value, digits, strip_zeros=False))
 
 
-def _arguments(
+def arguments(
     state: State, model: Model, convert: Callable[[sp.Expr], Any]
 ) -> dict[str, list[Any]]:
     """The arguments of a program's functions by name."""
@@ -102,7 +102,7 @@ def speeds_of(state: State, model: Model) -> tuple[sp.Expr, ...]:
 def _interpreter(source: Program, model: Model) -> Call:
     def call(name: str, state: State) -> list[Any]:
         return interpreter.run(
-            source.function(name), _arguments(state, model, float), interpreter.FLOAT
+            source.function(name), arguments(state, model, float), interpreter.FLOAT
         )
 
     return call
@@ -116,7 +116,7 @@ def _compiled(source: Program, model: Model) -> Call:
     library = compiled.build(render(source, TARGETS["c"], environment()), source)
 
     def call(name: str, state: State) -> list[Any]:
-        a = _arguments(state, model, float)
+        a = arguments(state, model, float)
         result = library.call(name, a["time"][0], a["state"], a["inputs"], a["parameters"])
         return list(result.ravel())
 
@@ -134,7 +134,7 @@ def _python(source: Program, model: Model) -> Call:
     def call(name: str, state: State) -> list[Any]:
         import numpy
 
-        a = _arguments(state, model, float)
+        a = arguments(state, model, float)
         names = [p.name for p in source.parameters]
         parameters = dict(zip(names, a["parameters"], strict=True))
         inputs = {"inputs": a["inputs"]} if source.inputs else {}
@@ -192,13 +192,15 @@ def evaluate(
     results = []
     for number, state in enumerate(states, 1):
         try:
-            results.append(_result(chosen, source, model, state))
+            results.append(named_results(chosen, source, model, state))
         except CheckError as error:
             raise CheckError(f"state {number}: {error}") from error
     return results
 
 
-def _result(chosen: Engine, source: Program, model: Model, state: State) -> Result:
+def named_results(chosen: Engine, source: Program, model: Model, state: State) -> Result:
+    """Accelerations, energies, generalized forces and outputs by name, ready for JSON."""
+
     def named(function: str, names: Sequence[str]) -> dict[str, Any]:
         values = chosen.call(function, state)
         return {n: chosen.shown(v) for n, v in zip(names, values, strict=True)}

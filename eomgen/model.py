@@ -192,6 +192,25 @@ class Moment:
 
 
 @dataclass(frozen=True)
+class Constraint:
+    """A relation between coordinates, or one-sided: `kind` as the author wrote it.
+
+    holonomic: every residual(q, t) = 0, or the two `points` coincide. nonholonomic: every
+    residual(q, q', t) = 0, linear in the rates. unilateral: the one residual(q, t), the gap, >= 0.
+    """
+
+    name: str
+    kind: str  # holonomic, nonholonomic, unilateral
+    residuals: tuple[sp.Expr, ...]  # () where points are set equal
+    text: str  # as it was written
+    points: tuple[str, str] | None = None
+    reaction: str | None = None  # name under which the constraint force is asked for
+    restitution: sp.Expr | None = None  # of a unilateral one, between 0 and 1
+    friction: sp.Expr | None = None  # Coulomb's coefficient, not negative
+    description: Description = Description()
+
+
+@dataclass(frozen=True)
 class Energy:
     """Terms that the author gives as formulas, or the whole model."""
 
@@ -252,8 +271,10 @@ class Model:
     dampers: tuple[Damper, ...] = ()
     forces: tuple[Force, ...] = ()
     moments: tuple[Moment, ...] = ()
+    constraints: tuple[Constraint, ...] = ()
     energy: Energy = Energy()
     initial: Mapping[str, sp.Expr] = field(default_factory=dict)  # "q" and "q'" -> SI value
+    guess: Mapping[str, sp.Expr] = field(default_factory=dict)  # for dependent coordinates
     range: Mapping[str, tuple[sp.Expr, sp.Expr]] = field(default_factory=dict)
     outputs: tuple[Output, ...] = ()
     expect: Expectation = Expectation()

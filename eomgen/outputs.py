@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil, log10
 from pathlib import Path
+from typing import Any
 
 from eomgen.errors import EomgenError
 from eomgen.render.notes import Notes
@@ -28,7 +29,12 @@ class Wish:
 
 def _notes(study: Study, wish: Wish) -> Named:
     line = check_line(study.report, wish.language)
-    return Notes(study.derivation, wish.language, line, wish.steps)
+    shown = None
+    if study.links is not None:
+        from eomgen.output_links import links
+
+        shown = links(study.links.scene.report, study.links.chosen, wish.language)
+    return Notes(study.derivation, wish.language, line, wish.steps, shown)
 
 
 def _program(study: Study, wish: Wish) -> Named:
@@ -67,6 +73,7 @@ WORDS = {
         "power": "power balance below {error}",
         "terms": "dimensions of {terms} terms",
         "claims": "claims of the author: {claims}",
+        "formulations": "formulations {names} at admissible states",
     },
     "es": {
         "checked": "comprobado",
@@ -78,6 +85,7 @@ WORDS = {
         "power": "balance de potencia menor que {error}",
         "terms": "dimensiones de {terms} términos",
         "claims": "afirmaciones del autor: {claims}",
+        "formulations": "formulaciones {names} en estados admisibles",
     },
 }
 
@@ -93,6 +101,8 @@ def check_line(report: Report, language: str) -> str:
         f"{routes}, {proven}{states}{digits}",
         words["power"].format(error=bound(report.power)),
     ]
+    if len(report.formulations) > 1:
+        parts.append(words["formulations"].format(names=" = ".join(report.formulations)))
     if report.terms:
         parts.append(words["terms"].format(terms=report.terms))
     if report.claims:
@@ -111,9 +121,27 @@ def summary(spec: str, study: Study, format_: str) -> str:
 
 
 def _text_summary(spec: str, study: Study) -> str:
-    count = len(study.model.coordinates)
-    freedom = f"{count} degree{'s' if count > 1 else ''} of freedom"
-    return f"{spec}: {freedom}; {check_line(study.report, 'en')}"
+    count = study.freedom
+    freedom = f"{count} degree{'s' if count != 1 else ''} of freedom"
+    said = "; ".join([freedom, *_linked_words(study), check_line(study.report, "en")])
+    return "\n    ".join([f"{spec}: {said}", *_initial_words(study)])
+
+
+def _initial_words(study: Study) -> tuple[str, ...]:
+    """How far the initial state was moved to the constraints, and other assembly modes."""
+    if study.links is None:
+        return ()
+    from eomgen.analysis.admissible import describe
+
+    return describe(study.machine, study.links.scene.report.initial)
+
+
+def _linked_words(study: Study) -> list[str]:
+    """The formulation of a linked scene and the warnings on its constraints."""
+    if study.links is None:
+        return []
+    chosen = study.links.chosen
+    return [f"{chosen.name} ({chosen.why})", *study.links.scene.report.freedom.warnings]
 
 
 def _json_summary(spec: str, study: Study) -> str:
@@ -121,15 +149,34 @@ def _json_summary(spec: str, study: Study) -> str:
     return json.dumps(
         {
             "file": spec,
-            "degrees_of_freedom": len(study.model.coordinates),
+            "degrees_of_freedom": study.freedom,
             "states": report.agreement.states,
             "relative_error": report.agreement.error,
             "proven": report.agreement.proven,
             "power_balance": report.power,
             "terms": report.terms,
             "claims": report.claims,
+            **_linked_json(study),
         }
     )
+
+
+def _linked_json(study: Study) -> dict[str, Any]:
+    """The cards of a linked scene, and what was decided."""
+    if study.links is None:
+        return {}
+    from eomgen.analysis.cards import to_json
+
+    freedom = study.links.scene.report.freedom
+    return {
+        "formulation": study.links.chosen.name,
+        "formulations": list(study.links.formulations),
+        "coordinates": freedom.coordinates,
+        "minimal_coordinates": freedom.minimal_coordinates,
+        "independent": list(freedom.basis.independent),
+        "warnings": list(freedom.warnings),
+        "constraints": [to_json(card) for card in study.links.scene.report.cards],
+    }
 
 
 def _github_summary(spec: str, study: Study) -> str:

@@ -8,14 +8,19 @@ text ─ spec.read ─► Model ─┬─ lagrange.derive ─► Derivation (clo
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from eomgen import compile
-from eomgen.checks import agreement, dimensions, expectations, power, samples
+from eomgen.checks import agreement, dimensions, expectations, mass, power, samples
 from eomgen.mechanics import lagrange
 from eomgen.mechanics.equations import Derivation
 from eomgen.model import Model
 from eomgen.program import Program
 from eomgen.spec import read
+from eomgen.wanted import AUTO, Wanted
+
+if TYPE_CHECKING:
+    from eomgen.study_linked import LinkedStudy
 
 
 @dataclass(frozen=True)
@@ -27,6 +32,7 @@ class Report:
     terms: int  # whose dimension was checked; 0 where the spec states no units
     claims: int  # of the author, all found to hold
     projected: bool  # bodies were projected; else both routes start from the author's energies
+    formulations: tuple[str, ...] = ()  # of a linked scene, found to agree
 
 
 @dataclass(frozen=True)
@@ -38,25 +44,52 @@ class Study:
     machine: compile.Machine
     program: Program
     report: Report
+    links: LinkedStudy | None = None  # where the scene has constraints
+
+    @property
+    def freedom(self) -> int:
+        """The degrees of freedom."""
+        if self.links is None:
+            return len(self.model.coordinates)
+        return self.links.scene.report.freedom.degrees_of_freedom
 
 
-def of_text(text: str | bytes, file: str) -> Study:
-    """The study of a spec.
+def of_text(text: str | bytes, file: str, wanted: Wanted = AUTO) -> Study:
+    """The study of a spec; `wanted` matters where it has constraints.
 
     Raises:
         SpecError: the spec has mistakes, all are listed.
         UsageError: the scene cannot be derived as it is described.
         CheckError: something derived would not be true; nothing may be printed.
     """
-    return of_model(read(text, file))
+    return of_model(read(text, file), wanted)
 
 
-def of_model(model: Model) -> Study:
+def of_model(model: Model, wanted: Wanted = AUTO) -> Study:
     """The study of a model; raises as `of_text`."""
+    if model.constraints:
+        # imported where it is needed: the analysis of constraints brings NumPy
+        from eomgen import study_linked
+
+        return _linked(study_linked.of_model(model, wanted))
     derivation = lagrange.derive(model)
     machine = compile.machine_of(model)
     report = checked(derivation, machine)
     return Study(model, derivation, machine, compile.program(machine), report)
+
+
+def _linked(links: LinkedStudy) -> Study:
+    """The study of a linked scene."""
+    report = Report(
+        agreement=links.agreement,
+        power=links.power,
+        terms=links.terms,
+        claims=links.claims,
+        projected=bool(links.derivation.model.bodies),
+        formulations=links.formulations,
+    )
+    model = links.derivation.model
+    return Study(model, links.derivation, links.machine, links.program(), report, links)
 
 
 def checked(derivation: Derivation, machine: compile.Machine) -> Report:
@@ -66,6 +99,7 @@ def checked(derivation: Derivation, machine: compile.Machine) -> Report:
         CheckError: one of the checks fails.
     """
     drawn = samples.draw(derivation.model)
+    mass.check(machine, drawn)
     return Report(
         terms=dimensions.check(derivation),
         agreement=agreement.compare(derivation, machine, drawn),

@@ -7,6 +7,7 @@ from io import BytesIO, TextIOWrapper
 
 import pytest
 from commandline import eomgen, together
+from reference import stem, wanted
 from scenes import SHIPPED
 
 from eomgen.cli import main
@@ -16,15 +17,16 @@ TARGETS = ("-t", "latex", "-t", "c", "-t", "python", "-t", "text")
 
 @pytest.fixture(scope="session")
 def generated(tmp_path_factory):
-    """Name of a shipped spec -> folder that the command line wrote: en/ everything, es/ notes."""
+    """A case of `reference` -> folder that the command line wrote: en/ and es/, everything."""
 
     @cache
-    def folder_of(name):
-        folder, spec = tmp_path_factory.mktemp(name), SHIPPED[name]
+    def folder_of(case):
+        folder, wish = tmp_path_factory.mktemp(case), ("--formulation", wanted(case))
+        generate = ("generate", SHIPPED[stem(case)], *TARGETS, *(wish if "-" in case else ()))
         together(
             [
-                eomgen("generate", spec, *TARGETS, "-o", folder / "en"),
-                eomgen("generate", spec, *TARGETS, "-o", folder / "es", "--lang", "es"),
+                eomgen(*generate, "-o", folder / "en"),
+                eomgen(*generate, "-o", folder / "es", "--lang", "es"),
             ]
         )
         return folder

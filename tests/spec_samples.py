@@ -122,10 +122,41 @@ constraints:
 """
 
 FREE = {"slider_pendulum": SLIDER_PENDULUM, "two_link_arm": TWO_LINK_ARM}
+
+# every key and form of constraints
+LINKED = r"""eom: 1
+system: Constraints of every kind
+space: plane
+gravity: [0, -g]
+parameters: {m: 2 kg, l: 1 m, g: 9.81 m/s^2, mu: 0.3, e: {about: restitution}, Omega: 3 rad/s}
+prescribed: {w: l*sin(Omega*t)/5}
+coordinates:
+  x: {unit: m, role: linked}
+  y: {unit: m, role: linked}
+  phi: rad
+  psi: {unit: rad, role: free}
+points:
+  A: [x, w]
+  B: {on: beam, at: [l, 0]}
+  C: l*[cos(psi), sin(psi)]
+bodies:
+  beam: {mass: m, at: A, angle: phi, inertia: m*l^2/12}
+  bob: {mass: m, at: "[x, y]"}
+constraints:
+  loop: {holonomic: B = C, reaction: pin, latex: \Phi_1, about: the beam's end}
+  track: {holonomic: "y = x*tan(Omega*t)", reaction: normal}
+  spin: {nonholonomic: x' - w' - l*phi'*cos(psi) = 0}
+  floor: {unilateral: y >= w - l, restitution: e, friction: mu/2}
+  ceiling: {unilateral: y <= 3*l, restitution: 0.5, reaction: push}
+initial: {psi: 30 deg, psi': 1 rad/s, guess: {x: 0.3 m, phi: 10 deg, y': 2 m/s}}
+expect: {dof: 1}
+"""
+
 CONSTRAINED = {
-    "four_bar": (FOUR_BAR, {"E601", "E603", "E604"}),
-    "rolling_disc": (ROLLING_DISC, {"E601"}),
-    "rope": (ROPE, {"E601"}),
+    "four_bar": FOUR_BAR,
+    "rolling_disc": ROLLING_DISC,
+    "rope": ROPE,
+    "linked": LINKED,
 }
 
 # every key of the language but constraints

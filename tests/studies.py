@@ -1,18 +1,10 @@
 """Studies of shipped specs and of spec texts, for tests."""
 
-from functools import cache
+from scenes import FREE, model_of, study_of
 
-from scenes import SHIPPED, model_of
-
-from eomgen.study import Study, of_model
-
-NAMES = list(SHIPPED)
+NAMES = FREE
 model = model_of
-
-
-@cache
-def study(name: str) -> Study:
-    return of_model(model(name))
+study = study_of
 
 
 PENDULUM = """\

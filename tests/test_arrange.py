@@ -11,10 +11,10 @@ from scenes import FILES, derivation_of
 
 from eomgen.algebra import normal
 from eomgen.algebra.closed import ClosedForm, Evaluation
-from eomgen.mechanics.equations import Equation, virtual_name
+from eomgen.mechanics.equations import Equation, multiplier_name, virtual_name
 from eomgen.model import Coordinate, Input, Model, Parameter, Prescribed
 from eomgen.render import arrange, arrange_equation, tree
-from eomgen.render.arrange_equation import LOADED
+from eomgen.render.arrange_equation import LOADED, RIGHT
 from eomgen.render.text import text
 
 HOW = {
@@ -56,12 +56,18 @@ class Names(dict):
         plain = name.rstrip("q")
         spelling = plain + "'" * (len(name) - len(plain)) if plain else name
         return {"sin": sp.sin, "cos": sp.cos, "sqrt": sp.sqrt, "half": sp.Rational(1, 2)}.get(
-            name, symbol(virtual_name(plain[1:]) if plain.startswith("D") else spelling)
+            name, symbol(prefixed(plain) or spelling)
         )
 
 
+def prefixed(plain):
+    """Ds is delta s, Lc is the multiplier of the row c."""
+    named = {"D": virtual_name, "L": multiplier_name}.get(plain[:1])
+    return named(plain[1:]) if named else ""
+
+
 def expression(formula):
-    """A SymPy expression of this test's own text: s'' is sqq, delta s is Ds."""
+    """A SymPy expression of this test's own text: s'' is sqq, delta s is Ds, a multiplier Lc."""
     return sp.sympify(eval(formula, {"__builtins__": {}}, Names()))  # noqa: S307
 
 
@@ -133,7 +139,7 @@ def test_a_formula_is_written_as_a_textbook_writes_it(how, formula, shown):
 def row(name, algebra, **parts):
     given = {part: algebra.of(expression(formula)) for part, formula in parts.items()}
     return Equation(
-        name, *(given.get(part, algebra.number(0)) for part in ("inertia", *LOADED, "applied"))
+        name, *(given.get(part, algebra.number(0)) for part in ("inertia", *LOADED, *RIGHT))
     )
 
 
@@ -198,6 +204,13 @@ EQUATIONS = [
      "l φ″ + 2 g sin φ = 0", "2"),
     (PENDULUM, "phi", {"inertia": "-l*phiqq", "gravity": "g*sin(phi)"},
      "l φ″ − g sin φ = 0", "1"),
+    # constraint forces: the multiplier in front, nothing divided that they do not share
+    (PLANE, "x", {"inertia": "m*xqq", "reaction": "2*Lc*x"}, "m x″ = 2 λ c x", "1"),
+    (PLANE, "x", {"inertia": "m*xqq", "applied": "F_x", "reaction": "-Lb + Lc*(x - y)"},
+     "m x″ = F_x − λ b + λ c (x − y)", "1"),
+    (PENDULUM, "phi", {"inertia": "m*l**2*phiqq", "gravity": "m*g*l*sin(phi)",
+                       "reaction": "l*Lc*sin(phi) + 2*Lb*l"},
+     "m (l φ″ + g sin φ) = 2 λ b + λ c sin φ", "l"),
 ]  # fmt: skip
 
 
@@ -262,6 +275,15 @@ def forms_of(derivation):
         yield "motion", entry
     for rate in derivation.rates:
         yield "motion", rate
+    yield from forms_of_constraints(derivation)
+
+
+def forms_of_constraints(derivation):
+    """The same of the cards and of the matrix form of a linked scene."""
+    for link in derivation.constraints:
+        yield "work", link.virtual
+        for part in (link.rate, link.gamma, *link.jacobian):
+            yield "motion", part
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -281,7 +303,8 @@ def test_an_equation_times_its_divisor_is_the_equation(name):
         left = normal.total(
             equation.inertia.ring, [equation.inertia, *(getattr(equation, p) for p in LOADED)]
         )
-        residual = left - equation.applied
+        right = [part for name in RIGHT if (part := getattr(equation, name))]
+        residual = left - normal.total(equation.inertia.ring, right)
         shown = tree.product(
             Fraction(1),
             (found.divisor, tree.Sum((found.left, tree.negated(found.right)))),

@@ -16,7 +16,9 @@ from studies import PENDULUM
 from eomgen import __version__, study
 from eomgen.cli import commands
 
-COMMANDS = ["check", "derive", "evaluate", "examples", "generate", "new", "schema", "templates"]
+COMMANDS = [
+    "check", "derive", "evaluate", "examples", "generate", "new", "schema", "statics", "templates",
+]  # fmt: skip
 EQUATION = "m l² φ″ + d φ′ + m l g sin φ = τ"
 STATE = {"coordinates": {"phi": "0.1"}, "rates": {"phi": 2}, "inputs": {"tau": 0.5}}
 FALSE = PENDULUM + "expect: {equations: m*l*phi'' + m*g*sin(phi) = 0}\n"
@@ -177,7 +179,7 @@ def test_a_false_claim_ends_with_1_and_writes_nothing(call, command, tmp_path):
 
 
 def test_a_defect_of_ours_shows_its_traceback(call, monkeypatch):
-    def broken(text, file):
+    def broken(text, file, wanted):
         raise RuntimeError("our own mistake")
 
     monkeypatch.setattr(study, "of_text", broken)

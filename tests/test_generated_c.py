@@ -5,8 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from commandline import run, together
-from reference import ARGUMENTS, NAMES, arguments, worst_error
-from scenes import program_of
+from reference import ARGUMENTS, CASES, arguments, stem, worst_error, written
 from tools import tool
 
 from eomgen.render.names import prefix
@@ -103,9 +102,9 @@ def initial_state(program):
     return [] if None in values else [float(v) for v in values]
 
 
-def main_of(name):
+def main_of(case):
     """A program that prints the tables and, for each state that it reads, all results."""
-    program = program_of(name)
+    program, name = written(case), stem(case)
     once = [INITIAL] if initial_state(program) else []
     once += [
         filled(NAMES_OF, kind=kind, size=size)
@@ -123,11 +122,11 @@ def main_of(name):
     )
 
 
-def built(name, folder):
+def built(case, folder):
     """Build -> executable: each compiler in both precisions, any warning is an error."""
-    main, stem = folder / "main.c", prefix(name).upper()
-    main.write_text(main_of(name), encoding="utf-8")
-    define = {"double": (), "float": (f"-D{stem}_FLOAT",)}
+    main, name = folder / "main.c", stem(case)
+    main.write_text(main_of(case), encoding="utf-8")
+    define = {"double": (), "float": (f"-D{prefix(name).upper()}_FLOAT",)}
     made = {build: folder / "_".join(build) for build in BUILDS}
     sources = (main, folder / f"{name}.c")
     together(
@@ -139,17 +138,17 @@ def built(name, folder):
 
 @pytest.fixture(scope="session")
 def printed(generated):
-    """Name and build -> first word of a line -> the rest of these lines."""
+    """Case and build -> first word of a line -> the rest of these lines."""
 
     @cache
-    def of_all_builds(name):
-        given = arguments(name)
+    def of_all_builds(case):
+        given = arguments(case)
         rows = np.concatenate([given[a] for a in ARGUMENTS], axis=1)
         text = "\n".join(" ".join(map(repr, row.tolist())) for row in rows)
-        made = built(name, generated(name) / "en")
+        made = built(case, generated(case) / "en")
         return {build: _lines(run(executable, text=text)) for build, executable in made.items()}
 
-    return lambda name, build: of_all_builds(name)[build]
+    return lambda case, build: of_all_builds(case)[build]
 
 
 def numbers(rows):
@@ -164,12 +163,12 @@ def _lines(text):
     return found
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_tables_are_those_of_the_spec(name, printed):
-    program = program_of(name)
+@pytest.mark.parametrize("case", CASES)
+def test_tables_are_those_of_the_spec(case, printed):
+    program = written(case)
     defaults = [float(p.value) for p in program.parameters]
     for build in BUILDS:
-        lines = printed(name, build)
+        lines = printed(case, build)
         rounding = {"double": 1e-16, "float": 1e-7}[build[1]]
         for kind, (table, _) in KINDS.items():
             assert lines.get(kind, [[]]) == [[v.name for v in getattr(program, table)]]
@@ -179,16 +178,16 @@ def test_tables_are_those_of_the_spec(name, printed):
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
-@pytest.mark.parametrize("name", NAMES)
-def test_double_is_true_to_50_digits(name, compiler, printed):
-    lines = printed(name, (compiler, "double"))
-    for function in program_of(name).functions:
-        assert worst_error(name, function.name, numbers(lines[function.name])) < 1e-12
+@pytest.mark.parametrize("case", CASES)
+def test_double_is_true_to_50_digits(case, compiler, printed):
+    lines = printed(case, (compiler, "double"))
+    for function in written(case).functions:
+        assert worst_error(case, function.name, numbers(lines[function.name])) < 1e-12
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
-@pytest.mark.parametrize("name", NAMES)
-def test_float_is_true_as_far_as_it_goes(name, compiler, printed):
-    lines = printed(name, (compiler, "float"))
-    for function in program_of(name).functions:
-        assert worst_error(name, function.name, numbers(lines[function.name])) < 3e-4
+@pytest.mark.parametrize("case", CASES)
+def test_float_is_true_as_far_as_it_goes(case, compiler, printed):
+    lines = printed(case, (compiler, "float"))
+    for function in written(case).functions:
+        assert worst_error(case, function.name, numbers(lines[function.name])) < 3e-4

@@ -6,8 +6,8 @@ from functools import cache
 import numpy as np
 import pytest
 from commandline import run
-from reference import NAMES, STATES, arguments, worst_error
-from scenes import model_of, program_of
+from reference import CASES, STATES, arguments, stem, worst_error, written
+from scenes import FREE, model_of
 from scipy.integrate import solve_ivp
 
 from eomgen import interpreter
@@ -26,34 +26,34 @@ spherical_pendulum sprung_pair
 
 @pytest.fixture(scope="session")
 def module(generated):
-    """Name of a shipped spec -> the module that was written for it, imported."""
+    """A case of `reference` -> the module that was written for it, imported."""
 
     @cache
-    def imported(name):
-        text = (generated(name) / "en" / f"{name}.py").read_text(encoding="utf-8")
-        return load_python(text, name)
+    def imported(case):
+        text = (generated(case) / "en" / f"{stem(case)}.py").read_text(encoding="utf-8")
+        return load_python(text, stem(case))
 
     return imported
 
 
-def called(module, name, function, number):
+def called(module, case, function, number):
     """The results of a function at one of the random states, row by row."""
-    given = {argument: rows[number] for argument, rows in arguments(name).items()}
+    given = {argument: rows[number] for argument, rows in arguments(case).items()}
     parameters = dict(zip(module.PARAMETERS, given["parameters"], strict=True))
     of = getattr(module, function)
     return np.ravel(of(given["time"][0], given["state"], given["inputs"], parameters))
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_results_are_true_to_50_digits(name, module):
-    for function in program_of(name).functions:
-        rows = [called(module(name), name, function.name, n) for n in range(STATES)]
-        assert worst_error(name, function.name, rows) < 1e-12
+@pytest.mark.parametrize("case", CASES)
+def test_results_are_true_to_50_digits(case, module):
+    for function in written(case).functions:
+        rows = [called(module(case), case, function.name, n) for n in range(STATES)]
+        assert worst_error(case, function.name, rows) < 1e-12
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_tables_are_those_of_the_spec(name, module):
-    program, found = program_of(name), module(name)
+@pytest.mark.parametrize("case", CASES)
+def test_tables_are_those_of_the_spec(case, module):
+    program, found = written(case), module(case)
     for table in ("coordinates", "speeds", "inputs", "parameters", "outputs"):
         variables = getattr(program, table)
         assert getattr(found, table.upper()) == tuple(v.name for v in variables)
@@ -63,10 +63,10 @@ def test_tables_are_those_of_the_spec(name, module):
     assert {p.name: float(p.value) for p in program.parameters} == found.DEFAULTS
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_many_states_at_once_are_the_states_one_by_one(name, module):
-    found, states = module(name), arguments(name)["state"].T
-    for function in program_of(name).functions:
+@pytest.mark.parametrize("case", CASES)
+def test_many_states_at_once_are_the_states_one_by_one(case, module):
+    found, states = module(case), arguments(case)["state"].T
+    for function in written(case).functions:
         call, inputs = getattr(found, function.name), np.ones(len(found.INPUTS))
         together = call(0.3, states, inputs)
         assert together.shape == (*function.shape, STATES)
@@ -75,9 +75,9 @@ def test_many_states_at_once_are_the_states_one_by_one(name, module):
         np.testing.assert_allclose(together, alone, rtol=1e-12, atol=1e-12 * size)
 
 
-def moved(module, name):
+def moved(module, case):
     """A short motion from the initial state of the spec, or from a random one."""
-    start = getattr(module, "INITIAL_STATE", arguments(name)["state"][0])
+    start = getattr(module, "INITIAL_STATE", arguments(case)["state"][0])
     inputs = np.zeros(len(module.INPUTS))
     found = solve_ivp(
         module.state_derivative, (0.0, SHORT), start, args=(inputs,), rtol=1e-10, atol=1e-12
@@ -86,9 +86,9 @@ def moved(module, name):
     return found, module.energy(found.t, found.y, inputs)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_solve_ivp_takes_it_as_it_is(name, module):
-    found, _ = moved(module(name), name)
+@pytest.mark.parametrize("case", CASES)
+def test_solve_ivp_takes_it_as_it_is(case, module):
+    found, _ = moved(module(case), case)
     assert np.isfinite(found.y).all()
     assert np.ptp(found.y, axis=1).max() > 0  # something moves
 
@@ -97,7 +97,7 @@ def is_conservative(name):
     """Whether energy cannot come or go: nothing is applied, damped or driven."""
     model = model_of(name)
     applied = (*model.inputs, *model.forces, *model.moments, *model.dampers, *model.prescribed)
-    driven = depends_on_time(program_of(name)) or not is_quadratic(name)
+    driven = depends_on_time(written(name)) or not is_quadratic(name)
     return not applied and not model.energy.dissipation and not driven
 
 
@@ -106,7 +106,7 @@ def is_quadratic(name):
     given = {argument: rows[0].tolist() for argument, rows in arguments(name).items()}
     count = len(model_of(name).coordinates)
     faster = [*given["state"][:count], *(2 * u for u in given["state"][count:])]
-    energy = program_of(name).function("energy")
+    energy = written(name).function("energy")
     slow, fast = (
         interpreter.run(energy, given | {"state": state}, interpreter.FLOAT)[0]
         for state in (given["state"], faster)
@@ -115,7 +115,7 @@ def is_quadratic(name):
 
 
 def test_the_list_of_conservative_scenes_is_complete():
-    assert [name for name in NAMES if is_conservative(name)] == CONSERVATIVE
+    assert [name for name in FREE if is_conservative(name)] == CONSERVATIVE
 
 
 @pytest.mark.parametrize("name", CONSERVATIVE)
@@ -125,9 +125,9 @@ def test_energy_is_kept_where_nothing_gives_or_takes_it(name, module):
     assert np.ptp(total) < 1e-6 * np.abs(energies).max()
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_linters_find_nothing(name, generated):
+@pytest.mark.parametrize("case", CASES)
+def test_linters_find_nothing(case, generated):
     words = (sys.executable, "-m", "ruff", "check", "--isolated", "--no-cache")
-    folder = generated(name) / "en"
+    folder = generated(case) / "en"
     run(*words, folder)
     run(*words, "--select", "E4,E7,E9,F,B,RUF100", folder)

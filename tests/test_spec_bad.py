@@ -1,9 +1,13 @@
 import pytest
+from bad_constraints import BAD_CONSTRAINTS
 from bad_specs import BAD, BASE, LINE, SOLID
+from spec_samples import FOUR_BAR, LINKED, ROLLING_DISC, ROPE
 
 from eomgen import spec
 from eomgen.errors import SpecError
 from eomgen.spec.report import render
+
+ALL = (*BAD, *BAD_CONSTRAINTS)
 
 
 def faults_of(text):
@@ -12,14 +16,14 @@ def faults_of(text):
     return caught.value.faults
 
 
-@pytest.mark.parametrize("bad", BAD, ids=lambda bad: bad.name)
+@pytest.mark.parametrize("bad", ALL, ids=lambda bad: bad.name)
 def test_bad_file_is_refused_at_its_place(bad):
     found = faults_of(bad.text)
     assert ", ".join(f"{f.location.line}:{f.location.column} {f.code}" for f in found) == bad.faults
     assert all(f.message and f.location.file == "x.yaml" for f in found)
 
 
-@pytest.mark.parametrize("bad", BAD, ids=lambda bad: bad.name)
+@pytest.mark.parametrize("bad", ALL, ids=lambda bad: bad.name)
 def test_caret_stands_below_a_character_of_the_line(bad):
     text = bad.text if isinstance(bad.text, str) else ""
     for fault in faults_of(bad.text):
@@ -35,7 +39,7 @@ def test_the_files_they_are_made_from_are_right(text):
 
 
 def test_names_in_the_table_are_different():
-    assert len({bad.name for bad in BAD}) == len({bad.text for bad in BAD}) == len(BAD)
+    assert len({bad.name for bad in ALL}) == len({bad.text for bad in ALL}) == len(ALL)
 
 
 @pytest.mark.parametrize(
@@ -49,6 +53,28 @@ def test_names_in_the_table_are_different():
         (BASE.replace("plane", "plan"), "did you mean 'plane'?"),
         (BASE.replace("-cos", "\u2212cos"), "write '-'"),
         (BASE.replace("phi: rad", "phi: deg"), "write 'rad'"),
+        (ROPE.replace(">=", ">"), "write '>='"),
+        (ROPE.replace(">= 0", "= 0"), "write 'holonomic' for an equation"),
+        (ROPE.replace("unilateral", "unilatral"), "did you mean 'unilateral'?"),
+        (ROPE.replace("l - sqrt(x^2 + y^2) >= 0", "0 <= x <= l"), "write two relations"),
+        (FOUR_BAR.replace("C = Cr", "C = Crr"), "did you mean 'Cr'?"),
+        (
+            FOUR_BAR.replace("C = Cr", '"C = D + [e, 0]"'),
+            "name it under 'points', or write one equation for each component",
+        ),
+        (
+            ROLLING_DISC.replace("x: {nonh", "x: {h"),
+            "write 'nonholonomic' for a relation between rates",
+        ),
+        (
+            LINKED.replace("y = x*tan(Omega*t)", "y' = x*Omega"),
+            "write 'nonholonomic' for a relation between rates",
+        ),
+        (
+            ROLLING_DISC.replace("x' - R*phi'*cos(theta)", "x - R*phi*cos(theta)"),
+            "write 'holonomic' for a relation between coordinates",
+        ),
+        (LINKED.replace("guess", "gues"), "did you mean 'guess'?"),
     ],
 )
 def test_hint_says_what_to_write(text, hint):

@@ -3,12 +3,12 @@ from hashlib import sha256
 import pytest
 import sympy as sp
 from bad_specs import BASE, LINE, SOLID
-from spec_samples import CONSTRAINED, EVERYTHING, FREE, SLIDER_PENDULUM, TWO_LINK_ARM
+from spec_samples import CONSTRAINED, EVERYTHING, FREE, LINKED, SLIDER_PENDULUM, TWO_LINK_ARM
 
 from eomgen import spec
 from eomgen.errors import SpecError
 from eomgen.model import Frame, Place, Turn
-from eomgen.spec.language import LANGUAGE
+from eomgen.spec.language import CONSTRAINT, LANGUAGE
 
 ZERO, ONE = sp.S.Zero, sp.S.One
 
@@ -30,12 +30,13 @@ def test_free_systems_are_read(name):
 
 
 @pytest.mark.parametrize("name", CONSTRAINED)
-def test_constraints_are_refused_and_nothing_else(name):
-    text, codes = CONSTRAINED[name]
-    with pytest.raises(SpecError) as caught:
-        read(text)
-    assert {f.code for f in caught.value.faults} == codes
-    assert all("not supported yet" in f.message for f in caught.value.faults)
+def test_constrained_systems_are_read(name):
+    model = read(CONSTRAINED[name], f"specs/{name}.yaml")
+    assert model.name == name
+    assert model.with_units
+    assert len(model.constraints) == CONSTRAINED[name].count("holonomic:") + CONSTRAINED[
+        name
+    ].count("unilateral:")
 
 
 def test_slider_pendulum_is_what_it_says():
@@ -69,11 +70,13 @@ def test_two_link_arm_hangs_one_frame_on_the_other():
     assert model.parameters[8].description.unit == "mm"
 
 
-def test_sample_with_everything_uses_every_key():
-    model = read(EVERYTHING)
+def test_samples_use_every_key():
     used = {line.split(":")[0] for line in EVERYTHING.splitlines() if line[0].isalpha()}
-    assert used == set(LANGUAGE.keys)
-    assert all(getattr(model, key) for key in used - {"eom", "system"})
+    assert used == set(LANGUAGE.keys) - {"constraints"}
+    assert all(getattr(read(EVERYTHING), key) for key in used - {"eom", "system"})
+    assert all(f"{key}: " in LINKED for key in CONSTRAINT.keys)
+    assert read(LINKED).constraints
+    assert read(LINKED).guess
 
 
 def test_derived_parameters_keep_their_formula_and_values_are_exact():

@@ -6,19 +6,19 @@ import yaml
 from bad_specs import BASE, LINE, SOLID
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from spec_samples import EVERYTHING, ROLLING_DISC, SLIDER_PENDULUM, TWO_LINK_ARM
+from spec_samples import CONSTRAINED, EVERYTHING, SLIDER_PENDULUM, TWO_LINK_ARM
 
 from eomgen import spec
 from eomgen.errors import SpecError
 from eomgen.spec.ledger import Ledger, Mistake
 from eomgen.spec.reader import Mapping, Scalar, Sequence, lines_of, read_tree
 
-SAMPLES = (EVERYTHING, SLIDER_PENDULUM, TWO_LINK_ARM, ROLLING_DISC, BASE, LINE, SOLID)
+SAMPLES = (EVERYTHING, SLIDER_PENDULUM, TWO_LINK_ARM, BASE, LINE, SOLID, *CONSTRAINED.values())
 PIECES = (
     *"[]{}:,'\"-+*/^()=>&!|#%@`~ \t\n\r\0", "\n  ", "\n- ", ": ", "<<: ", "---\n", "''", "1e308",
     "1e-300", "\u03b8", "\u2028", "\ufeff", "\U0001f40d", "!!python/object:x ", "**9**9",
-    "[]", "{}",     "phi'''", "der(",
-     "sqrt(", "log(", "/0", "nan", "kg", "m/s", "on", "~", "null", "min(", "atan2(",
+    "[]", "{}", "phi'''", "der(", "<=", ">=", " = ", "phi'", "holonomic: ", "unilateral: ",
+    "guess: ", "sqrt(", "log(", "/0", "nan", "kg", "m/s", "on", "~", "null", "min(", "atan2(",
 )  # fmt: skip
 
 

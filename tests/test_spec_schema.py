@@ -5,7 +5,7 @@ import sys
 import pytest
 import yaml
 from bad_specs import BASE, SOLID
-from spec_samples import EVERYTHING, FREE
+from spec_samples import CONSTRAINED, EVERYTHING, FREE, LINKED
 
 from eomgen.spec.language import LANGUAGE, Either, Items, Leaf, Record, Table
 from eomgen.spec.schema import schema
@@ -55,7 +55,7 @@ def loaded(text):
     )
 
 
-@pytest.mark.parametrize("text", [*FREE.values(), EVERYTHING, BASE, SOLID])
+@pytest.mark.parametrize("text", [*FREE.values(), *CONSTRAINED.values(), EVERYTHING, BASE, SOLID])
 def test_schema_accepts_what_the_reader_accepts(text):
     assert accepts(schema(), loaded(text))
 
@@ -112,6 +112,28 @@ def test_schema_refuses_a_wrong_value(key, value):
     assert not accepts(schema(), loaded(EVERYTHING) | {key: value})
 
 
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("holonomic: B = C", "holonom: B = C"),
+        ("holonomic: B = C", "holonomic: [B, C]"),
+        ("reaction: pin", "reaction: [pin]"),
+        ("guess: {", "gues: {"),
+        ("phi: 10 deg", "phi: [10 deg]"),
+        ("role: free", "role: dependent"),
+    ],
+)
+def test_schema_refuses_a_wrong_constraint(old, new):
+    assert accepts(schema(), loaded(LINKED))
+    assert not accepts(schema(), loaded(LINKED.replace(old, new)))
+
+
+def test_schema_accepts_a_list_of_constraints():
+    text = BASE + "constraints: [{holonomic: phi = 1, about: stuck}]\n"
+    assert accepts(schema(), loaded(text))
+    assert not accepts(schema(), loaded(text.replace("about", "abut")))
+
+
 def test_every_key_is_described():
     def visit(form):
         match form:
@@ -122,8 +144,11 @@ def test_every_key_is_described():
             case Either(forms):
                 for inner in forms:
                     visit(inner)
-            case Items(inner, _, _) | Table(inner):
+            case Items(inner, _, _):
                 visit(inner)
+            case Table(inner, keys):
+                visit(inner)
+                visit(Record(keys))
             case Leaf():
                 pass
 

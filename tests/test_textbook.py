@@ -1,5 +1,6 @@
 """Identities that every scene obeys, and the textbook results that the specs claim."""
 
+import json
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -10,17 +11,22 @@ import sympy as sp
 from scenes import (
     EXTRA,
     FILES,
+    FREE,
+    LINKED,
     SHIPPED,
+    admissible_of,
     derivation_of,
+    each,
     machine_of,
     model_of,
     program_of,
     samples_of,
+    study_of,
     text_of,
 )
 from scipy.integrate import solve_ivp
 
-from eomgen import interpreter, states
+from eomgen import evaluate_linked, interpreter, states
 from eomgen.algebra import ldl, normal
 from eomgen.algebra.arithmetic import evaluate, mpmath_arithmetic
 from eomgen.algebra.assemble import assemble
@@ -35,7 +41,9 @@ from eomgen.model import TIME, Claim
 
 HALF = Fraction(1, 2)
 MPMATH = mpmath_arithmetic(50)
-every = pytest.mark.parametrize("name", FILES)
+every = each(FILES)  # as if nothing were linked, where it makes sense
+unlinked = pytest.mark.parametrize("name", [*FREE, *EXTRA])
+linked = each(LINKED)
 
 # T is a quadratic form of the rates only where nothing moves by itself
 DRIVEN = {
@@ -62,7 +70,7 @@ def matrices(name, rows):
 # --- the specs as pages
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", FREE)
 def test_a_shipped_spec_is_complete(name):
     model = model_of(name)
     assert text_of(name).splitlines()[0] == ("# yaml-language-server: $schema=./eomgen.schema.json")
@@ -84,15 +92,29 @@ def test_both_derivations_agree(name):
     assert found.states == samples_of(name).count
 
 
-@every
+@unlinked
 def test_power_in_is_the_rate_of_the_energy(name):
     assert power.balance(machine_of(name), samples_of(name)) < 1e-11
 
 
-@every
+@linked
+def test_power_in_and_that_of_the_constraints_is_the_rate_of_the_energy(name):
+    """An identity of M q'' + h = Q + J' lambda: it holds off the constraints too."""
+    for drawn in (samples_of(name), admissible_of(name)):
+        assert power.balance(study_of(name).machine, drawn) < 1e-11
+
+
+@unlinked
 def test_the_claims_of_the_spec_hold(name):
     claimed = expectations.check(machine_of(name), samples_of(name))
     assert claimed == expectations.count(machine_of(name)) > 0
+
+
+@linked
+def test_the_claims_of_a_linked_spec_hold(name):
+    found = study_of(name)
+    claimed = expectations.check(found.machine, admissible_of(name), found.freedom)
+    assert claimed == expectations.count(found.machine) > 0
 
 
 @every
@@ -101,10 +123,13 @@ def test_terms_of_the_derived_equations_have_one_dimension(name):
 
 
 def falsified(claim, model):
-    """The claim with the last of its terms that move doubled."""
+    """The claim with the last of its terms that move doubled; of a linked scene, plus one.
+
+    There a claim may be that each of its terms is zero.
+    """
     moving = {s for c in model.coordinates for s in (c.symbol, c.rate, c.acceleration)}
     terms = [t for t in expectations.summands(claim.residual) if t.free_symbols & moving]
-    return Claim(claim.residual + terms[-1], claim.text)
+    return Claim(claim.residual + terms[-1] + int(bool(model.constraints)), claim.text)
 
 
 def grown(claim, model):
@@ -139,14 +164,26 @@ def wrong_expectations(model):
             yield replace(expect, **{key: changed})
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+def claiming(machine, expect):
+    """The machine with other claims."""
+    model = replace(machine.model, expect=expect)
+    return replace(machine, kinematics=replace(machine.kinematics, model=model))
+
+
+@pytest.mark.parametrize("name", FREE)
 def test_every_claim_is_refused_when_it_is_made_false(name):
     machine = machine_of(name)
     for wrong in wrong_expectations(machine.model):
-        model = replace(machine.model, expect=wrong)
-        changed = replace(machine, kinematics=replace(machine.kinematics, model=model))
         with pytest.raises(CheckError, match="^expect: "):
-            expectations.check(changed, samples_of(name))
+            expectations.check(claiming(machine, wrong), samples_of(name))
+
+
+@linked
+def test_every_claim_of_a_linked_spec_is_refused_when_it_is_made_false(name):
+    found = study_of(name)
+    for wrong in wrong_expectations(found.model):
+        with pytest.raises(CheckError, match="^expect: "):
+            expectations.check(claiming(found.machine, wrong), admissible_of(name), found.freedom)
 
 
 # --- the mass matrix
@@ -213,7 +250,7 @@ def test_bias_is_christoffel_times_the_rates_and_mdot_minus_2c_is_skew(name):
 # --- forward and inverse dynamics
 
 
-@every
+@unlinked
 def test_inverse_after_forward_dynamics_gives_the_applied_forces(name):
     """M u' + h = Q with the u' of the program, through its own interpreter."""
     program, arguments = program_of(name), samples_of(name).arguments()
@@ -250,13 +287,21 @@ def test_forward_after_inverse_dynamics_is_the_identity(name):
 
 @cache
 def initial_state(name):
-    model = model_of(name)
-    inputs = ", ".join(f'"{i.name}": "0.3"' for i in model.inputs)
-    (state,) = states.read(f'{{"inputs": {{{inputs}}}}}', model, needs_time=False)
+    model = evaluate_linked.consistent(study_of(name).links) if name in LINKED else model_of(name)
+    given = {"inputs": {i.name: "0.3" for i in model.inputs}, **OTHER_START.get(name, {})}
+    (state,) = states.read(json.dumps(given), model, needs_time=False)
     return state, [float(v) for v in (*state.coordinates, *speeds_of(state, model))]
 
 
-DURATION = {"heavy_top": 0.2, "gyroscope": 0.1}  # [s]; 2 s for what does not spin
+# [s]; 2 s for what neither spins nor is stiff nor comes to a singular position
+DURATION = {
+    "heavy_top": 0.2,
+    "gyroscope": 0.1,
+    "flyball_governor": 0.01,
+    "parallelogram": 0.2,
+    "slider_crank_equal": 0.2,
+}
+OTHER_START = {"mass_leaving_sphere": {"rates": {"y": "0.3"}}}  # the spec's moves in a plane
 
 
 def along(name, function, t, y):
@@ -270,10 +315,11 @@ def along(name, function, t, y):
 @cache
 def motion(name):
     """The motion from the initial state: (times, states)."""
-    derivative, duration = program_of(name).function("state_derivative"), DURATION.get(name, 2.0)
+    wanted = "multiplier" if name in LINKED else "auto"
+    derivative = program_of(name, wanted).function("state_derivative")
     path = solve_ivp(
         lambda t, y: along(name, derivative, t, y),
-        (0, duration),
+        (0, DURATION.get(name, 2.0)),
         initial_state(name)[1],
         method="DOP853",
         rtol=1e-11,

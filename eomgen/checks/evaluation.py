@@ -45,12 +45,6 @@ class Bench:
         ).of
 
 
-def leaves_of(machine: Machine) -> list[Node]:
-    """The arguments of the program, as nodes."""
-    bound = machine.kinematics.algebra.bindings.values()
-    return [node for node in dict.fromkeys(bound) if isinstance(node.datum, Read)]
-
-
 def symbol_of(machine: Machine) -> dict[Node, sp.Symbol]:
     """The symbol of every argument."""
     bindings = machine.kinematics.algebra.bindings
@@ -86,7 +80,7 @@ def _bench(
 ) -> Bench:
     leaves = {
         leaf: arithmetic.number(arguments[leaf.datum.argument][leaf.datum.index])
-        for leaf in leaves_of(machine)
+        for leaf in machine.leaves
     }
     return Bench(machine, leaves, arithmetic)
 

@@ -20,14 +20,14 @@ from eomgen.model import Claim
 TOLERANCE = 1e-8
 
 
-def check(machine: Machine, samples: Samples) -> int:
-    """The number of claims that hold.
+def check(machine: Machine, samples: Samples, freedom: int | None = None) -> int:
+    """The number of claims that hold; `freedom`: degrees of freedom, where links were counted.
 
     Raises:
         CheckError: lists every claim that does not hold.
     """
     broken = [
-        *_degrees_of_freedom(machine),
+        *_degrees_of_freedom(machine, freedom),
         *_equations(machine, samples),
         *_conserved(machine, samples),
         *_energies(machine, samples),
@@ -46,11 +46,13 @@ def count(machine: Machine) -> int:
     return sum(c is not None for c in single) + sum(len(c) for c in listed)
 
 
-def _degrees_of_freedom(machine: Machine) -> list[str]:
-    stated, found = machine.model.expect.dof, len(machine.model.coordinates)
+def _degrees_of_freedom(machine: Machine, freedom: int | None) -> list[str]:
+    stated, count = machine.model.expect.dof, len(machine.model.coordinates)
+    found = count if freedom is None else freedom
     if stated in (None, found):
         return []
-    return [f"dof is {found}, one for each free coordinate, not {stated}"]
+    how = "one for each free coordinate" if freedom is None else "by the rank of the constraints"
+    return [f"dof is {found}, {how}, not {stated}"]
 
 
 def moving_algebra(machine: Machine) -> Algebra[Node]:

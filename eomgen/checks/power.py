@@ -65,6 +65,7 @@ def balance_terms(machine: Machine) -> list[Node]:
     terms = [algebra.along(energy, {s: r}) for s, r in motion.items()]
     terms += [algebra.along(potential, {s: r}) for s, r in motion.items() if s != TIME]
     terms += [-power for power in _powers(machine, relative)]
+    terms += [-power for power in _constraint_powers(machine)]
     terms.append(algebra.along(kinetic, {TIME: one}))
     terms += [p * e for p, e in zip(momenta, _explicit(machine), strict=True)]
     return terms
@@ -94,6 +95,15 @@ def _powers(machine: Machine, relative: Sequence[Node]) -> Iterable[Node]:
     for effort in everything:
         for symbol, speed in zip(speeds.symbols(machine.model), relative, strict=True):
             yield efforts.generalized_force(machine.kinematics, effort, symbol) * speed
+
+
+def _constraint_powers(machine: Machine) -> list[Node]:
+    """lambda J q' of every row: zero but where a constraint moves by itself (rheonomic)."""
+    if not machine.kept:
+        return []
+    rows = machine.schur.rows
+    pairs = zip(machine.linked.multipliers, rows, strict=True)
+    return [multiplier * dot(row.jacobian, machine.rates) for multiplier, row in pairs]
 
 
 def _explicit(machine: Machine) -> list[Node]:

@@ -68,7 +68,7 @@ class LagrangeRow:
 
 @dataclass(frozen=True)
 class Equation:
-    """One equation of motion: inertia + damping + elastic + gravity + other = applied."""
+    """One equation: inertia + damping + elastic + gravity + other = applied + reaction."""
 
     name: str  # the coordinate, or the speed
     inertia: Form  # terms with and without accelerations, from T
@@ -77,6 +77,19 @@ class Equation:
     gravity: Form  # from the potential of weights
     other: Form  # from the potential given as a formula
     applied: Form  # Q, on the right
+    reaction: Form | None = None  # J' lambda of a linked scene, on the right too
+
+
+@dataclass(frozen=True)
+class ConstraintRow:
+    """One scalar constraint in closed form: residual = 0, rate = 0, virtual = 0."""
+
+    name: str
+    residual: Form | None  # None where the author states it between rates
+    rate: Form
+    virtual: Form  # sum of J_j delta q_j, at frozen time
+    jacobian: tuple[Form, ...]
+    gamma: Form  # J q'' + gamma = 0
 
 
 @dataclass(frozen=True)
@@ -96,9 +109,15 @@ class Derivation:
     rows: tuple[LagrangeRow, ...]
     equations: tuple[Equation, ...]
     matrix: Equations[Form]
+    constraints: tuple[ConstraintRow, ...] = ()
     rates: tuple[Form, ...] = ()  # q' in terms of the speeds; empty where the speeds are q'
 
 
 def virtual_name(coordinate: str) -> str:
     """The name of the symbol of a coordinate's virtual displacement."""
     return f"delta {coordinate}"
+
+
+def multiplier_name(row: str) -> str:
+    """The name of the symbol of a row's Lagrange multiplier."""
+    return f"lambda {row}"

@@ -6,7 +6,7 @@ d/dt(dL/dq') - dL/dq + dD/dq' = Q,  L = T - V   (lecture, "Ecuaciones de Lagrang
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import sympy as sp
@@ -14,8 +14,9 @@ import sympy as sp
 from eomgen.algebra import normal
 from eomgen.algebra.closed import ClosedForm
 from eomgen.algebra.normal import Form
-from eomgen.mechanics import efforts, energies, quasi_velocities
+from eomgen.mechanics import constraints, efforts, energies, quasi_velocities
 from eomgen.mechanics.equations import (
+    ConstraintRow,
     Contribution,
     Derivation,
     Equation,
@@ -23,9 +24,11 @@ from eomgen.mechanics.equations import (
     LagrangeRow,
     Place,
     Spin,
+    multiplier_name,
     virtual_name,
 )
 from eomgen.mechanics.kinematics import Flow, Kinematics
+from eomgen.mechanics.vectors import dot
 from eomgen.model import TIME, Coordinate, Model
 
 
@@ -112,6 +115,8 @@ def derive(model: Model) -> Derivation:
     pairs = zip(model.coordinates, rows, strict=True)
     in_rates = tuple(_equation(lagrangian, c, row) for c, row in pairs)
     rates, equations = quasi_velocities.project(lagrangian.kinematics, in_rates)
+    links = closed_rows(lagrangian.kinematics)
+    equations = with_reactions(lagrangian.kinematics, equations, links)
     return Derivation(
         model=model,
         places=_places(lagrangian.kinematics),
@@ -126,8 +131,45 @@ def derive(model: Model) -> Derivation:
         rows=rows,
         equations=equations,
         matrix=matrix_form(lagrangian.kinematics, equations),
+        constraints=links,
         rates=rates,
     )
+
+
+def closed_rows(kinematics: Kinematics[Form]) -> tuple[ConstraintRow, ...]:
+    """The rows of the bilateral constraints in closed form, with their virtual form."""
+    deltas = [kinematics.algebra.of(virtual_symbol(c)) for c in kinematics.model.coordinates]
+    return tuple(
+        ConstraintRow(
+            name=row.name,
+            residual=row.residual,
+            rate=row.rate,
+            virtual=dot(row.jacobian, deltas),
+            jacobian=row.jacobian,
+            gamma=row.gamma,
+        )
+        for row in constraints.rows(kinematics)
+    )
+
+
+def with_reactions(
+    kinematics: Kinematics[Form],
+    equations: tuple[Equation, ...],
+    links: tuple[ConstraintRow, ...],
+) -> tuple[Equation, ...]:
+    """Lagrange's equations of the first kind: J' lambda on the right."""
+    if not links:
+        return equations
+    multipliers = [kinematics.algebra.of(multiplier_symbol(row.name)) for row in links]
+    return tuple(
+        replace(e, reaction=dot([row.jacobian[j] for row in links], multipliers))
+        for j, e in enumerate(equations)
+    )
+
+
+def multiplier_symbol(row: str) -> sp.Symbol:
+    """The symbol of a row's Lagrange multiplier."""
+    return sp.Symbol(multiplier_name(row), real=True)
 
 
 def _row(lagrangian: Lagrangian, coordinate: Coordinate) -> LagrangeRow:

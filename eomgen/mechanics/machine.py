@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import sympy as sp
 
 from eomgen.algebra.graph import Graph, Node
@@ -22,15 +24,27 @@ def graph_kinematics(model: Model) -> Kinematics[Node]:
     Raises:
         UsageError: declared speeds are not independent.
     """
+    bindings = known(model)
+    rates = speeds.rates(model, GraphAlgebra(bindings[TIME].graph, bindings))
+    return moving(model, bindings, rates)
+
+
+def known(model: Model) -> dict[sp.Symbol, Node]:
+    """What every symbol but the rates stands for, on a new graph."""
     graph = Graph()
     bindings = _arguments(model, graph)
     _bind_derived(model, graph, bindings)
     _bind_prescribed(model, graph, bindings)
-    algebra = GraphAlgebra(graph, bindings)
-    rates = speeds.rates(model, algebra)
-    for coordinate, rate in zip(model.coordinates, rates, strict=True):
-        bindings[coordinate.rate] = rate
-    algebra = GraphAlgebra(graph, bindings)
+    return bindings
+
+
+def moving(
+    model: Model, bindings: dict[sp.Symbol, Node], rates: Sequence[Node]
+) -> Kinematics[Node]:
+    """Kinematics with these rates q' of the coordinates, over the speeds of the model."""
+    graph = bindings[TIME].graph
+    pairs = zip(model.coordinates, rates, strict=True)
+    algebra = GraphAlgebra(graph, bindings | {c.rate: rate for c, rate in pairs})
     flow = {c.symbol: r for c, r in zip(model.coordinates, rates, strict=True)}
     return Kinematics(model, algebra, Flow(flow, {**flow, TIME: graph.one}))
 

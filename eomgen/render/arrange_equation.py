@@ -1,7 +1,7 @@
 """An equation of motion, sorted: accelerations, velocity terms, damping, stiffness, gravity = Q.
 
 Common factors that never vanish are divided out, and said. Forces that only dissipate do not
-hinder this: they are divided too, -c' phi' / (m_B l).
+hinder this: they are divided too, -c' phi' / (m_B l). Constraint forces do, unless they share them.
 """
 
 from __future__ import annotations
@@ -10,14 +10,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from eomgen.mechanics.equations import Equation
+from eomgen.mechanics.equations import Equation, multiplier_name
 from eomgen.render import tree
 from eomgen.render.arrange import LOADS, Arranger, degree, sections
 from eomgen.render.arrange_order import Kind
-from eomgen.render.arrange_pieces import Piece, common, ordered, shown, summed, without
-from eomgen.render.arrange_sums import shortest
+from eomgen.render.arrange_pieces import (
+    Piece,
+    common,
+    of_term,
+    ordered,
+    shown,
+    summed,
+    without,
+)
+from eomgen.render.arrange_sums import bracket, collected, grouped, shortest
 from eomgen.render.arrange_terms import Factors, Term, flat
-from eomgen.render.tree import Symbol, Tree
+from eomgen.render.tree import Number, Product, Symbol, Tree
 
 
 @dataclass(frozen=True)
@@ -33,14 +41,15 @@ class Arranged:
 Parts = Mapping[str, Sequence[Term]]  # the terms by origin, as in `Equation`
 
 LOADED = ("damping", "elastic", "gravity", "other")
+RIGHT = ("applied", "reaction")
+MULTIPLIER = multiplier_name("")
 
 
 def equation(arranger: Arranger, row: Equation) -> Arranged:
     """The displayed equation of a coordinate or a speed."""
     factors = arranger.factors(row.inertia.ring)
-    parts: Parts = {
-        name: flat(factors, getattr(row, name)) for name in ("inertia", *LOADED, "applied")
-    }
+    given = {name: getattr(row, name) for name in ("inertia", *LOADED, *RIGHT)}
+    parts: Parts = {name: flat(factors, form) if form else [] for name, form in given.items()}
     shared = _shared(factors, parts)
     parts = _over(factors, parts, shared)
     number = _number([t.number for terms in parts.values() for t in terms])
@@ -54,8 +63,38 @@ def equation(arranger: Arranger, row: Equation) -> Arranged:
 
 
 def _right(factors: Factors, parts: Parts) -> Tree:
-    """What is applied."""
-    return summed(factors, shortest(factors, parts["applied"], LOADS))
+    """What is applied, then what each constraint adds: F + lambda J."""
+    applied = summed(factors, shortest(factors, parts["applied"], LOADS))
+    return tree.total(tree.terms_of(applied) + _reaction(factors, parts["reaction"]))
+
+
+def _reaction(factors: Factors, terms: Sequence[Term]) -> tuple[Tree, ...]:
+    """One term for each multiplier, which stands in front: -2 lambda (x_2 - x_1)."""
+    own = sorted(terms, key=lambda t: factors.place((_multiplier(factors, t), 1)))
+    return tuple(_share(factors, g) for g in grouped(own, lambda t: _multiplier(factors, t)))
+
+
+def _multiplier(factors: Factors, term: Term) -> int:
+    """The factor that is a Lagrange multiplier."""
+    return next(f for f, _ in term.motion if _is_multiplier(factors.trees[f]))
+
+
+def _is_multiplier(shown: Tree) -> bool:
+    return isinstance(shown, Symbol) and shown.name.startswith(MULTIPLIER)
+
+
+def _share(factors: Factors, terms: Sequence[Term]) -> Tree:
+    """The multiplier times its coefficient."""
+    factor = _multiplier(factors, terms[0])
+    rest = [t._replace(motion=without(factors, t.motion, {factor: 1})) for t in terms]
+    piece = bracket(factors, rest, collected) if len(rest) > 1 else of_term(factors, rest[0])
+    found, lead = shown(factors, piece), factors.trees[factor]
+    match found:
+        case Number(number):
+            return tree.product(number, (lead,))
+        case Product(coefficient, symbols, divisors):
+            return tree.product(coefficient, (lead, *symbols), divisors)
+    return tree.product(Fraction(1), (lead, found))
 
 
 def _left(factors: Factors, parts: Parts, own: str | None) -> list[Piece]:
@@ -67,10 +106,10 @@ def _left(factors: Factors, parts: Parts, own: str | None) -> list[Piece]:
 
 
 def _front(factors: Factors, parts: Parts, own: str | None) -> Tree:
-    """The left side; m (R'' - R theta'^2) where an input on the right keeps m from leaving."""
+    """The left side; m (R'' - R theta'^2) where what drives it keeps m from leaving."""
     left = [t for name in ("inertia", *LOADED) for t in parts[name]]
     shared = common([t.parameters for t in left]) if left else {}
-    driven = any(_is_driven(factors, t) for t in parts["applied"])
+    driven = any(_is_driven(factors, t) for name in RIGHT for t in parts[name])
     if len(left) < 2 or len(shared) != 1 or not driven:
         return tree.total(tuple(shown(factors, p) for p in _left(factors, parts, own)))
     inside = _left(factors, _over(factors, parts, shared), own)
@@ -79,7 +118,7 @@ def _front(factors: Factors, parts: Parts, own: str | None) -> Tree:
 
 
 def _is_driven(factors: Factors, term: Term) -> bool:
-    """Whether an input acts in the term."""
+    """Whether an input or a multiplier acts in the term."""
     return any(factors.kind(f) is Kind.INPUT for f, _ in term.motion)
 
 

@@ -37,6 +37,7 @@ def style(model: Model) -> Style:
         display=display,
         pairs=pairs,
         equation=equation,
+        at_least=lambda left, right: relation(rf"{left} \ge {right}"),
         matrix=matrix,
         fits=lambda rows: matrix_width(rows) <= LINE - GAP,
         remark=lambda text: rf"\text{{{escaped(text)}}}",
@@ -90,7 +91,14 @@ def pairs(rows: Sequence[Rows]) -> str:
 
 def equation(left: str, right: str) -> str:
     """Rows of one numbered equation: left = right, broken in its left side."""
-    first, *rest = broken(f"{left} = {right}", LINE - NUMBER)
+    return relation(f"{left} = {right}")
+
+
+def relation(whole: str) -> str:
+    """Rows of one relation, aligned at their left."""
+    first, *rest = broken(whole, LINE - NUMBER)
+    # behind & TeX takes a minus for one between two terms
+    first = re.sub("^-", "{-}", first)
     spelled = [f"& {first}", *(rf"&\quad {line}" for line in rest)]
     return " \\notag \\\\\n".join(spelled)
 

@@ -17,11 +17,15 @@ from eomgen.render import (
     arrange_equation,
     latex_style,
     notes_data,
+    notes_links_names,
+    notes_links_page,
     notes_matrix,
     text_style,
     tree,
     words,
 )
+from eomgen.render.arrange_equation import RIGHT
+from eomgen.render.notes_links import Links
 from eomgen.render.notes_page import (
     ENOUGH,
     LARGEST,
@@ -36,7 +40,7 @@ from eomgen.render.style import Style
 from eomgen.render.tree import Tree
 
 REPEATED = 60  # terms of a Lagrangian that is written out below T and V
-PARTS = ("inertia", "damping", "elastic", "gravity", "other", "applied")
+PARTS = ("inertia", "damping", "elastic", "gravity", "other", *RIGHT)
 
 
 @dataclass(frozen=True)
@@ -47,6 +51,7 @@ class Notes:
     language: str = "en"
     check: str = ""
     steps: bool = False  # whether the text shows the partial derivatives; LaTeX always does
+    links: Links | None = None  # what is known of the constraints
 
     @property
     def name(self) -> str:
@@ -66,6 +71,8 @@ def text_context(notes: Notes) -> dict[str, object]:
 
 def context(notes: Notes, style: Style) -> dict[str, object]:
     """Every formula of the notes, spelled."""
+    names = notes_links_names.aliases(notes.derivation)
+    style = notes_links_names.with_multipliers(style, names)
     page = Page(notes.derivation, notes.language, style)
     model = notes.derivation.model
     return {
@@ -76,6 +83,7 @@ def context(notes: Notes, style: Style) -> dict[str, object]:
         "check": style.words(notes.check),
         "show_steps": notes.steps,
         **notes_data.tables(page),
+        **notes_links_page.tables(page, notes.links),
         **_places(page),
         **_energies(page),
         **_forces(page),
@@ -216,18 +224,24 @@ def _equations(page: Page) -> dict[str, object]:
         "rates": style.display([(q, formula(page, arrange.motion, r)) for q, r in rates]),
         "equations": tuple(_equation(page, e) for e in d.equations),
         "in_speeds": bool(speeds),
+        "constraint_equations": notes_links_page.equations(page),
     }
+
+
+def _readable(found: Tree) -> Tree | int:
+    """The tree, or its size where nobody would read it."""
+    size = tree.size(found)
+    return size if size > LARGEST else found
 
 
 def _equation(page: Page, row: Equation) -> dict[str, str]:
     """One equation, and the words before it: what it was divided by."""
     style = page.style
-    count = sum(len(getattr(row, part).terms) for part in PARTS)
+    count = sum(len(form.terms) for part in PARTS if (form := getattr(row, part)))
     if count > ENOUGH:
         return {"body": style.equation(spelled(page, count), "0"), "said": page.words["equation"]}
     found = arrange_equation.equation(page.arranger, row)
-    size = tree.size(found.left)
-    left = spelled(page, size if size > LARGEST else found.left)
+    left, right = (spelled(page, _readable(side)) for side in (found.left, found.right))
     divisor = "" if found.divisor == tree.ONE else style.inline(style.formula(found.divisor))
     said = page.words["divided"].format(divisor=divisor) if divisor else page.words["equation"]
-    return {"body": style.equation(left, style.formula(found.right)), "said": said}
+    return {"body": style.equation(left, right), "said": said}

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.algebra.normal import Form
+from eomgen.mechanics import lagrange
 from eomgen.mechanics.equations import Derivation
 from eomgen.render import arrange, tree, words
 from eomgen.render.arrange import Arranger
@@ -30,7 +31,10 @@ class Page:
     @cached_property
     def arranger(self) -> Arranger:
         """Arranges every formula of the page."""
-        return arrange.of_model(self.derivation.model)
+        arranger = arrange.of_model(self.derivation.model)
+        for row in self.derivation.constraints:
+            arranger.order.rank(lagrange.multiplier_symbol(row.name))  # in this order
+        return arranger
 
     @cached_property
     def words(self) -> Mapping[str, str]:

@@ -28,6 +28,7 @@ class Style:
     display: Callable[[Rows], str]  # equations below each other, long ones broken
     pairs: Callable[[Sequence[Rows]], str]  # equations beside each other
     equation: Callable[[str, str], str]  # left = right, broken anywhere
+    at_least: Callable[[str, str], str]  # left >= right, broken anywhere
     matrix: Callable[[Sequence[Sequence[str]]], str]
     fits: Callable[[Sequence[Sequence[str]]], bool]  # whether a matrix goes on a line
     remark: Callable[[str], str]  # words in place of a formula

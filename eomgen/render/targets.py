@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 import jinja2
 
-from eomgen.render import code_context, notes
+from eomgen.render import code_context, notes, statics
 from eomgen.render.names import module
 from eomgen.render.templating import fill
 
@@ -52,6 +52,16 @@ TARGETS = {
         "Unicode text for the terminal",
         {"{name}.txt": "text/derivation.txt.j2"},
         notes.text_context,
+    ),
+    "statics-latex": Target(
+        "lecture notes on equilibrium: pdflatex with amsmath",
+        {"{name}_statics.tex": "latex/statics.tex.j2"},
+        statics.latex_context,
+    ),
+    "statics-text": Target(
+        "Unicode text on equilibrium for the terminal",
+        {"{name}_statics.txt": "text/statics.txt.j2"},
+        statics.text_context,
     ),
 }
 

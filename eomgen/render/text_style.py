@@ -40,6 +40,7 @@ def style() -> Style:
         display=display,
         pairs=lambda rows: display([equation for row in rows for equation in row]),
         equation=equation,
+        at_least=lambda left, right: relation(f"{left} ≥ {right}"),
         matrix=matrix,
         fits=lambda rows: matrix_width(rows) <= LINE,
         remark=lambda words: f"({words})",
@@ -59,7 +60,12 @@ def display(rows: Rows) -> str:
 
 def equation(left: str, right: str) -> str:
     """One equation of motion, broken in its left side."""
-    first, *rest = layout.lines(f"{left} = {right}", LINE, width)
+    return relation(f"{left} = {right}")
+
+
+def relation(whole: str) -> str:
+    """One relation, what is too long going on below."""
+    first, *rest = layout.lines(whole, LINE, width)
     return "\n".join([f"  {first}", *(f"      {line}" for line in rest)])
 
 

@@ -17,6 +17,67 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "coordinates": "Generalized coordinates",
         "coordinates_free": "The coordinates are free: their number, {count}, is that of the"
         " degrees of freedom.",
+        "constraints": "Constraints",
+        "bilateral": "bilateral",
+        "unilateral": "unilateral",
+        "scleronomic": "scleronomic",
+        "rheonomic": "rheonomic",
+        "holonomic": "holonomic",
+        "nonholonomic": "nonholonomic: it cannot be integrated ({growth})",
+        "integrable": "holonomic: stated between rates, it can be integrated",
+        "inequality": "not holonomic, for an inequality eliminates no coordinate",
+        "virtual": "A virtual displacement, infinitesimal and at constant time, keeps every"
+        " constraint:",
+        "virtual_rates": "Where a constraint is stated between rates, the coefficients of the rates"
+        " take the place of these derivatives.",
+        "form_equation": "constraint",
+        "form_gap": "gap",
+        "form_rate": "rate form",
+        "form_virtual": "virtual form",
+        "form_rate_contact": "rate form, in contact",
+        "form_virtual_contact": "virtual form, in contact",
+        "form_hidden": "integrated",
+        "constant": "constant",
+        "multiplier": "Multiplier: {symbols}.",
+        "multipliers": "Multipliers: {symbols}.",
+        "redundant": "Redundant, as it follows from other constraints: {rows}.",
+        "hidden_unknown": "What it says between positions was not found in closed form.",
+        "contact": "In contact the gap is zero, the constraint holds as a bilateral one does, and"
+        " its force acts only so as to open the gap: its multiplier is not negative. In flight the"
+        " gap is positive and there is no force.",
+        "restitution": "An impact reverses the rate of the gap and multiplies it by {value}.",
+        "friction": "Coulomb friction, with the coefficient {value}, resists sliding.",
+        "growth": "The numbers are the dimensions that the admissible directions span: alone, then"
+        " with their brackets, step by step.",
+        "growth_time": "The time counts as a coordinate there.",
+        "freedom": "Degrees of freedom",
+        "count_coordinates": "number of coordinates",
+        "count_rank": "rank of the constraints",
+        "count_freedom": "degrees of freedom (independent virtual displacements)",
+        "count_minimal": "minimal number of coordinates",
+        "proof": "The rank was found at {states} admissible states.",
+        "all_holonomic": "Every bilateral constraint is holonomic: the minimal number of"
+        " coordinates is that of the degrees of freedom, {minimal}.",
+        "some_nonholonomic": "A constraint that cannot be integrated restricts the virtual"
+        " displacements, not the configurations: the minimal number of coordinates, {minimal}, is"
+        " greater than that of the degrees of freedom, {freedom}.",
+        "count_contact": "This holds in flight; a closed gap counts as one more constraint.",
+        "combined": "Together they can be integrated:",
+        "basis": "Basis of the virtual displacements: {symbols}.",
+        "basis_others": "Basis of the virtual displacements: {symbols}. The others follow from it:",
+        "no_basis": "No virtual displacement is possible.",
+        "coordinates_linked": "The set of coordinates is linked: their number, {count}, is greater"
+        " than that of the degrees of freedom, {freedom}.",
+        "coordinates_independent": "The coordinates are independent of each other, and yet their"
+        " number, {count}, is greater than that of the degrees of freedom, {freedom}.",
+        "first_kind": "Lagrange's equations of the first kind",
+        "ideal": "Ideal constraint forces do no virtual work. Each constraint brings a"
+        " multiplier; what stands beside it, {math}, is the coefficient of the virtual displacement"
+        " in the virtual form.",
+        "together": "together with the constraints",
+        "flight": "These are the equations of flight. In contact, each closed gap adds its"
+        " multiplier, times the coefficient of the virtual displacement in its virtual form, to the"
+        " generalized force.",
         "speeds": "The speeds are",
         "rates": "so that the rates are",
         "prescribed": "Prescribed motions",
@@ -54,6 +115,68 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "coordinates": "Coordenadas generalizadas",
         "coordinates_free": "El conjunto de coordenadas es libre: su número, {count}, es el de"
         " grados de libertad.",
+        "constraints": "Ligaduras",
+        "bilateral": "bilateral",
+        "unilateral": "unilateral",
+        "scleronomic": "esclerónoma",
+        "rheonomic": "reónoma",
+        "holonomic": "holónoma",
+        "nonholonomic": "no holónoma: no se puede integrar ({growth})",
+        "integrable": "holónoma: escrita entre velocidades, se puede integrar",
+        "inequality": "no holónoma, pues una desigualdad no elimina ninguna coordenada",
+        "virtual": "Un desplazamiento virtual, infinitesimal y a tiempo constante, cumple todas las"
+        " ligaduras:",
+        "virtual_rates": "Donde una ligadura se escribe entre velocidades, los coeficientes de las"
+        " velocidades ocupan el lugar de estas derivadas.",
+        "form_equation": "ligadura",
+        "form_gap": "holgura",
+        "form_rate": "en velocidades",
+        "form_virtual": "forma virtual",
+        "form_rate_contact": "en velocidades, en contacto",
+        "form_virtual_contact": "forma virtual, en contacto",
+        "form_hidden": "integrada",
+        "constant": "constante",
+        "multiplier": "Multiplicador: {symbols}.",
+        "multipliers": "Multiplicadores: {symbols}.",
+        "redundant": "Redundante, pues se deduce de otras ligaduras: {rows}.",
+        "hidden_unknown": "No se ha hallado en forma cerrada su relación entre posiciones.",
+        "contact": "En contacto la holgura es nula, la ligadura actúa como una bilateral y su"
+        " fuerza solo tiende a abrir la holgura: su multiplicador no es negativo. En vuelo la"
+        " holgura es positiva y no hay fuerza.",
+        "restitution": "Un choque invierte la velocidad de la holgura y la multiplica por {value}.",
+        "friction": "El rozamiento de Coulomb, de coeficiente {value}, se opone al deslizamiento.",
+        "growth": "Los números son las dimensiones que generan las direcciones admisibles: solas, y"
+        " después con sus corchetes, paso a paso.",
+        "growth_time": "El tiempo cuenta ahí como una coordenada.",
+        "freedom": "Grados de libertad",
+        "count_coordinates": "número de coordenadas",
+        "count_rank": "rango de las ligaduras",
+        "count_freedom": "grados de libertad (desplazamientos virtuales independientes)",
+        "count_minimal": "número mínimo de coordenadas",
+        "proof": "El rango se ha hallado en {states} estados admisibles.",
+        "all_holonomic": "Todas las ligaduras bilaterales son holónomas: el número mínimo de"
+        " coordenadas es el de grados de libertad, {minimal}.",
+        "some_nonholonomic": "Una ligadura que no se puede integrar restringe los desplazamientos"
+        " virtuales, no las configuraciones: el número mínimo de coordenadas, {minimal}, es mayor"
+        " que el de grados de libertad, {freedom}.",
+        "count_contact": "Esto vale en vuelo; una holgura cerrada cuenta como una ligadura más.",
+        "combined": "Juntas se pueden integrar:",
+        "basis": "Base de los desplazamientos virtuales: {symbols}.",
+        "basis_others": "Base de los desplazamientos virtuales: {symbols}. De ella se deducen los"
+        " demás:",
+        "no_basis": "Ningún desplazamiento virtual es posible.",
+        "coordinates_linked": "El conjunto de coordenadas es ligado: su número, {count}, es mayor"
+        " que el de grados de libertad, {freedom}.",
+        "coordinates_independent": "Las coordenadas son independientes entre sí y, aun así, su"
+        " número, {count}, es mayor que el de grados de libertad, {freedom}.",
+        "first_kind": "Ecuaciones de Lagrange de primera especie",
+        "ideal": "Las fuerzas de ligadura ideales no realizan trabajo virtual. Cada ligadura"
+        " aporta un multiplicador; lo acompaña {math}, el coeficiente del desplazamiento virtual en"
+        " la forma virtual.",
+        "together": "junto con las ligaduras",
+        "flight": "Estas son las ecuaciones en vuelo. En contacto, cada holgura cerrada suma a la"
+        " fuerza generalizada su multiplicador por el coeficiente del desplazamiento virtual en su"
+        " forma virtual.",
         "speeds": "Las velocidades generalizadas son",
         "rates": "de modo que",
         "prescribed": "Movimientos prescritos",

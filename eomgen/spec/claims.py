@@ -22,17 +22,32 @@ from eomgen.spec.reader import Entry, Mapping, Node, Scalar, Sequence
 from eomgen.spec.scope import Known, Scene, Wanted
 from eomgen.spec.syntax import Name, Span
 
+Values = dict[str, sp.Expr]
 
-def initial(entries: tuple[Entry, ...], scene: Scene) -> dict[str, sp.Expr]:
-    """`q` and `q'` -> exact SI value."""
-    found = {e.key.text: scene.ledger.attempt(_initial, e, scene) for e in entries}
+
+def initial(entries: tuple[Entry, ...], scene: Scene, noun: str = "initial value") -> Values:
+    """`q` and `q'` -> exact SI value; the guess, which is a map, is left out."""
+    known = [e for e in entries if isinstance(e.value, Scalar)]
+    found = {e.key.text: scene.ledger.attempt(_initial, e, scene, noun) for e in known}
     return {name: value for name, value in found.items() if value is not None}
 
 
-def _initial(entry: Entry, scene: Scene) -> sp.Expr:
+def guess(entries: tuple[Entry, ...], scene: Scene) -> Values:
+    """The values under `guess`, none of which is given as an initial value too."""
+    given = {e.key.text for e in entries}
+    tables = [e.value for e in entries if isinstance(e.value, Mapping)]
+    guessed = tuple(e for table in tables for e in table.entries)
+    for entry in guessed:
+        if entry.key.text in given:
+            message = f"'{entry.key.text}' has an initial value and a guess"
+            scene.ledger.note(Mistake(entry.key, "E514", message, "keep one of them"))
+    return initial(guessed, scene, "guess")
+
+
+def _initial(entry: Entry, scene: Scene, noun: str) -> sp.Expr:
     name = _coordinate(entry.key, scene, most=1)
     assert isinstance(entry.value, Scalar)
-    what = f"the initial value of '{entry.key.text}'"
+    what = f"the {noun} of '{entry.key.text}'"
     value = constant(entry.value, scene, _like(name, "initial value", what))
     positive = name.order == 0 and scene.names[name.name].expressions[0].is_positive
     if positive and value.is_positive is False:

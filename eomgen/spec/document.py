@@ -11,7 +11,19 @@ import sympy as sp
 
 from eomgen.dimension import Dimension
 from eomgen.model import Model
-from eomgen.spec import claims, constants, cycles, dimensions, loads, motion, names, places
+from eomgen.spec import (
+    claims,
+    constants,
+    constraints,
+    cycles,
+    dimensions,
+    loads,
+    motion,
+    movers,
+    names,
+    places,
+    roles,
+)
 from eomgen.spec.formula import NAME
 from eomgen.spec.language import LANGUAGE
 from eomgen.spec.ledger import Ledger, Mistake
@@ -67,13 +79,20 @@ def _model(whole: Mapping, root: Mapping, ledger: Ledger) -> Model:
         forces=loads.each(root.get("forces"), "force", loads.force, scene),
         moments=loads.each(root.get("moments"), "moment", loads.moment, scene),
         energy=loads.energy(root.get("energy"), scene),
+    )
+    moving = movers.movers(known.points, known.bodies, scene)
+    known = replace(
+        known,
+        constraints=constraints.constraints(root.get("constraints"), moving, scene),
         initial=claims.initial(_table(root, "initial"), scene),
+        guess=claims.guess(_table(root, "initial"), scene),
         range=claims.ranges(_table(root, "range"), scene),
         outputs=claims.outputs(_table(root, "outputs"), scene),
         expect=claims.expectation(root.get("expect"), scene),
         with_units=scene.units_seen,
     )
     ledger.attempt(cycles.check, known.points, known.bodies, scene)
+    roles.check(whole, root, scene)
     return _with_dimensions(known, scene) if scene.units_seen else _without_dimensions(known)
 
 

@@ -40,18 +40,20 @@ FUNCTIONS = {  # name -> fewest and most arguments
     "min": (2, 8),
     "max": (2, 8),
 }
+SIGNS = ("=", ">=", "<=")
 RESERVED = ("t", "pi", "der", *FUNCTIONS)
 
 LETTER = "A-Za-z_\u0391-\u03a9\u03b1-\u03c9\u03d1\u03d5\u03d6\u03f1\u03f5"
 NAME = re.compile(f"[{LETTER}][{LETTER}0-9]*")
 NUMBER = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 TOKEN = re.compile(
-    rf"(?P<number>{NUMBER.pattern})|(?P<name>{NAME.pattern}'*)|(?P<mark>\*\*|>=|[-+*/^()\[\],=])",
+    rf"(?P<number>{NUMBER.pattern})|(?P<name>{NAME.pattern}'*)|(?P<mark>\*\*|>=|<=|[-+*/^()\[\],=])",
     re.ASCII,
 )
 INSTEAD = {
     "\u2212": "write '-'", "\u2013": "write '-'", "\u00b7": "write '*'", "\u00d7": "write '*'",
     "\u2019": "write ' for a rate", "\u00b2": "write '^2'", "\u00b3": "write '^3'",
+    ">": "write '>='", "<": "write '<='", "\u2265": "write '>='", "\u2264": "write '<='",
 }  # fmt: skip
 
 
@@ -74,14 +76,23 @@ def parse(source: Scalar) -> Tree:
 
 
 def parse_relation(source: Scalar) -> Relation:
-    """The two sides of `left = right` or `left >= right`."""
+    """The two sides of `left = right`, `left >= right` or `left <= right`."""
     parser = _Parser(source)
     left = parser.sum(0)
     sign = parser.token
-    if sign.text not in ("=", ">="):
+    if sign.kind == "end":
         raise parser.mistake(sign, "expected '=' and a right side", "E205")
+    if sign.text not in SIGNS:
+        parser.expect_end()
     parser.index += 1
+    if parser.token.text == sign.text:
+        raise parser.mistake(
+            parser.token, f"'{sign.text}' stands here twice", "E205", "once will do"
+        )
     right = parser.sum(0)
+    if parser.token.text in SIGNS:
+        message = f"a second '{parser.token.text}' in one relation"
+        raise parser.mistake(parser.token, message, "E205", "write two relations")
     parser.expect_end()
     return Relation(left, sign.text, right, parser.span(0, len(source.text)))
 
@@ -165,7 +176,7 @@ class _Parser:
         if token.kind in ("name", "number") or token.text in ("(", "["):
             hint = "write '*' for a product"
             raise self.mistake(token, f"missing operator before {shown(token.text)}", hint=hint)
-        if token.text in ("=", ">="):
+        if token.text in SIGNS:
             raise self.mistake(token, f"'{token.text}' has no place in this formula", "E205")
         raise self.mistake(token, f"{shown(token.text)} is one too many")
 

@@ -78,13 +78,18 @@ def vector(node: Node, scene: Scene, wanted: Wanted) -> lower.Affine:
 
 def relation(node: Scalar, scene: Scene, wanted: Wanted) -> sp.Expr:
     """left - right of an equation."""
-    found: Relation = parse_relation(node)
+    found = parse_relation(node)
     if found.sign != "=":
-        raise Mistake(found.span, "E205", "an equation has '=', not '>='")
+        raise Mistake(found.span, "E205", f"an equation has '=', not '{found.sign}'")
+    return residual(found, scene, wanted)
+
+
+def residual(found: Relation, scene: Scene, wanted: Wanted) -> sp.Expr:
+    """left - right, turned round for `left <= right`, kept for the dimension check."""
     where = lower.Lowering(scene, wanted.use)
-    residual = lower.scalar(found.left, where) - lower.scalar(found.right, where)
+    difference = lower.scalar(found.left, where) - lower.scalar(found.right, where)
     scene.statements.append(Statement(found, wanted))
-    return residual
+    return -difference if found.sign == "<=" else difference
 
 
 def value_of(tree: Tree, scene: Scene) -> sp.Expr | None:

@@ -4,7 +4,7 @@ The reader checks keys with it and the JSON Schema is made from it.
 """
 
 from collections.abc import Mapping as Map
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,10 @@ class Items:
 
 @dataclass(frozen=True)
 class Table:
-    """A map from the author's names to values."""
+    """A map from the author's names to values; a few keys may mean something of their own."""
 
     of: "Form"
+    keys: "Map[str, Key]" = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,11 @@ COORDINATE = Either(
         UNIT,
         Record(
             {
-                "role": Key("free (default) or linked", Leaf("choice", ("free", "linked"))),
+                "role": Key(
+                    "beside constraints: free (wanted as independent) or linked (dependent); "
+                    "once one is linked, the others are free",
+                    Leaf("choice", ("free", "linked")),
+                ),
                 **DESCRIBED,
                 "positive": POSITIVE,
             }
@@ -174,7 +179,27 @@ MOMENT = Record(
     }
 )
 
+CONSTRAINT = Record(
+    {
+        "holonomic": Key(
+            "left = right between positions and t, or two points or bodies set equal: C = Cr",
+            RELATION,
+        ),
+        "nonholonomic": Key("left = right between rates, linear in them", RELATION),
+        "unilateral": Key("left >= right (or <=) between positions and t", RELATION),
+        "reaction": Key("name under which the constraint force is asked for", NAME),
+        "restitution": Key(
+            "of a unilateral one: rebound over approach speed, from 0 to 1", FORMULA
+        ),
+        "friction": Key("of a unilateral one: Coulomb's coefficient, not negative", FORMULA),
+        "latex": LATEX,
+        "about": ABOUT,
+    }
+)
+
 EQUATIONS = Either((RELATION, Items(RELATION), Table(RELATION)))
+GUESS = "beside constraints: about where coordinates and rates are that the constraints decide"
+INITIAL = {"guess": Key(GUESS, Table(QUANTITY))}
 EQUILIBRIUM = Either((Table(QUANTITY), Items(Table(QUANTITY))))
 
 LANGUAGE = Record(
@@ -219,6 +244,11 @@ LANGUAGE = Record(
         "dampers": Key("dampers", Either((Items(DAMPER), Table(DAMPER)))),
         "forces": Key("forces", Either((Items(FORCE), Table(FORCE)))),
         "moments": Key("moments", Either((Items(MOMENT), Table(MOMENT)))),
+        "constraints": Key(
+            "relations that the coordinates keep; each one of 'holonomic', 'nonholonomic', "
+            "'unilateral'",
+            Either((Items(CONSTRAINT), Table(CONSTRAINT))),
+        ),
         "energy": Key(
             "extra terms, or the whole model",
             Record(
@@ -229,7 +259,7 @@ LANGUAGE = Record(
                 }
             ),
         ),
-        "initial": Key("initial values of coordinates and rates", Table(QUANTITY)),
+        "initial": Key("initial values of coordinates and rates", Table(QUANTITY, INITIAL)),
         "range": Key(
             "the region in which the scene moves", Table(Items(QUANTITY, least=2, most=2))
         ),

@@ -52,7 +52,7 @@ def gravity(node: Node, scene: Scene) -> tuple[sp.Expr, ...]:
 def spring(name: str, keys: Mapping, scene: Scene) -> Spring:
     """A spring between two points or along a formula."""
     between, along, by = _path(name, keys, scene)
-    given = _only(name, keys, POTENTIALS)
+    given = only(name, keys, POTENTIALS)
     energy, reach = _pairing(by)
     local = Local("s", sp.Symbol(f"s ({name})", real=True), reach, by)
     inverse = tuple((tree, -power) for tree, power in by)
@@ -62,7 +62,7 @@ def spring(name: str, keys: Mapping, scene: Scene) -> Spring:
         "energy": Wanted("spring law", f"the energy of {name}", energy, (), local),
         "law": Wanted("spring law", f"the force of {name}", energy / reach, inverse, local),
     }
-    formula = scalar(_node(keys, given), scene, wanted[given])
+    formula = scalar(node_of(keys, given), scene, wanted[given])
     free_length = _free_length(name, keys, Wanted("free length", "", reach, by), scene)
     return Spring(name, between, along, free_length, local.symbol, **{given: formula})
 
@@ -70,7 +70,7 @@ def spring(name: str, keys: Mapping, scene: Scene) -> Spring:
 def damper(name: str, keys: Mapping, scene: Scene) -> Damper:
     """A damper between two points or along a formula."""
     between, along, by = _path(name, keys, scene)
-    given = _only(name, keys, RESISTANCES)
+    given = only(name, keys, RESISTANCES)
     energy, reach = _pairing(by)
     local = Local("v", sp.Symbol(f"v ({name})", real=True), reach / TIME, by)
     inverse = tuple((tree, -power) for tree, power in by)
@@ -80,7 +80,7 @@ def damper(name: str, keys: Mapping, scene: Scene) -> Damper:
         "damping": Wanted("damping", f"the damping of {name}", damping, twice),
         "law": Wanted("damper law", f"the force of {name}", energy / reach, inverse, local),
     }
-    formula = scalar(_node(keys, given), scene, wanted[given])
+    formula = scalar(node_of(keys, given), scene, wanted[given])
     return Damper(name, between, along, local.symbol, **{given: formula})
 
 
@@ -93,9 +93,9 @@ def _path(
     name: str, keys: Mapping, scene: Scene
 ) -> tuple[tuple[str, str] | None, sp.Expr | None, By]:
     """The two ends, or the formula of the elongation and its tree."""
-    if _only(name, keys, ("between", "along")) == "between":
-        return pair(_node(keys, "between"), scene), None, ()
-    node = _node(keys, "along")
+    if only(name, keys, ("between", "along")) == "between":
+        return pair(node_of(keys, "between"), scene), None, ()
+    node = node_of(keys, "along")
     formula = scalar(node, scene, Wanted("elongation", f"the elongation of {name}"))
     tree = tree_of(node, scene)
     if all(scene.names[n.name].kind != "coordinate" for n in names(tree)):
@@ -116,7 +116,7 @@ def _free_length(name: str, keys: Mapping, wanted: Wanted, scene: Scene) -> sp.E
     return scalar(node, scene, Wanted(wanted.use, what, wanted.dimension, wanted.by))
 
 
-def _only(name: str, keys: Mapping, choices: tuple[str, ...]) -> str:
+def only(name: str, keys: Mapping, choices: tuple[str, ...]) -> str:
     """The one of the keys that is given."""
     given = [key for key in choices if keys.get(key) is not None]
     if len(given) == 1:
@@ -127,7 +127,8 @@ def _only(name: str, keys: Mapping, choices: tuple[str, ...]) -> str:
     raise Mistake(keys, code, f"{name} needs {options}, {found}")
 
 
-def _node(keys: Mapping, name: str) -> Node:
+def node_of(keys: Mapping, name: str) -> Node:
+    """The value of a key that is there."""
     found = keys.get(name)
     assert found is not None
     return found
@@ -136,7 +137,7 @@ def _node(keys: Mapping, name: str) -> Node:
 def force(name: str, keys: Mapping, scene: Scene) -> Force:
     """A force on a point."""
     on, source = _ends(keys, place_name, scene)
-    found = vector(_node(keys, "force"), scene, Wanted("force", name, FORCE))
+    found = vector(node_of(keys, "force"), scene, Wanted("force", name, FORCE))
     return Force(name, on, found.components, source, _axes(keys, scene))
 
 
@@ -145,7 +146,7 @@ def moment(name: str, keys: Mapping, scene: Scene) -> Moment:
     if scene.space == "line":
         raise Mistake(keys, "E507", "there are no moments in space 'line'")
     on, source = _ends(keys, body_name, scene)
-    node, wanted = _node(keys, "moment"), Wanted("moment", name, ENERGY)
+    node, wanted = node_of(keys, "moment"), Wanted("moment", name, ENERGY)
     if scene.space == "solid":
         components = vector(node, scene, wanted).components
     else:
@@ -157,7 +158,7 @@ def _ends(
     keys: Mapping, name_of: Callable[[Node, Scene], str], scene: Scene
 ) -> tuple[str, str | None]:
     source = keys.get("from")
-    on = name_of(_node(keys, "on"), scene)
+    on = name_of(node_of(keys, "on"), scene)
     other = name_of(source, scene) if source is not None else None
     if source is not None and other == on:
         raise Mistake(source, "E507", f"'{on}' takes its own reaction")

@@ -21,14 +21,11 @@ def coordinates(entries: tuple[Entry, ...], scene: Scene) -> tuple[Coordinate, .
 
 
 def _coordinate(entry: Entry, scene: Scene) -> Coordinate:
-    role = field(entry.value, "role")
-    if role is not None and role.text == "linked":
-        message = "not supported yet: linked coordinates, which need constraints"
-        raise Mistake(role, "E603", message, "use free coordinates")
     described, known = _described(entry, scene)
     positive = text_of(field(entry.value, "positive")) == "true"
     value, rate, acceleration = known.expressions
-    return Coordinate(entry.key.text, value, rate, acceleration, described, positive=positive)
+    role = text_of(field(entry.value, "role")) or "free"
+    return Coordinate(entry.key.text, value, rate, acceleration, described, role, positive)
 
 
 def _described(entry: Entry, scene: Scene) -> tuple[Description, Known]:

@@ -53,17 +53,23 @@ def are_complete(root: Mapping) -> bool:
 def check(key: Scalar, names: dict[str, Known]) -> Scalar:
     """The key, if it is free and a proper name; else raises `Mistake`."""
     name = key.text
-    if name in (*RESERVED, WORLD):
-        raise Mistake(key, "E304", f"'{name}' is a word of the language", "choose another name")
-    if not NAME.fullmatch(name) or len(name) > MOST_CHARACTERS:
-        hint = "letters, digits and '_', a letter first"
-        raise Mistake(key, "E304", f"{shown(name)} is not a name", hint)
+    check_spelling(key)
     if name in names:
         first = names[name]
         line = f" on line {first.spot.line}" if first.spot else ""
         message = f"name '{name}' is already taken by the {first.kind}{line}"
         raise Mistake(key, "E303", message, "choose another name")
     return key
+
+
+def check_spelling(key: Scalar) -> None:
+    """Raise `Mistake` where the key is no proper name."""
+    name = key.text
+    if name in (*RESERVED, WORLD):
+        raise Mistake(key, "E304", f"'{name}' is a word of the language", "choose another name")
+    if not NAME.fullmatch(name) or len(name) > MOST_CHARACTERS:
+        hint = "letters, digits and '_', a letter first"
+        raise Mistake(key, "E304", f"{shown(name)} is not a name", hint)
 
 
 def _known(key: Scalar, value: Node, kind: str, orders: int) -> Known:

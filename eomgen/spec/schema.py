@@ -1,5 +1,6 @@
 """The JSON Schema (2020-12) of the language, made from the table that the reader checks with."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from eomgen.spec.language import LANGUAGE, Either, Form, Items, Key, Leaf, Record, Table
@@ -37,8 +38,8 @@ def of(form: Form) -> Schema:
         case Items(inner, least, most):
             bounds = {"minItems": least} | ({"maxItems": most} if most else {})
             return {"type": "array", "items": of(inner), **bounds}
-        case Table(inner):
-            return {"type": "object", "additionalProperties": of(inner)}
+        case Table(inner, keys):
+            return {"type": "object", **_properties(keys), "additionalProperties": of(inner)}
         case Record(keys):
             return _record(dict(keys))
 
@@ -48,12 +49,17 @@ def _choice(choices: tuple[str, ...]) -> Schema:
     return {"enum": [int(c) if c.isdigit() else c for c in choices]}
 
 
+def _properties(keys: Mapping[str, Key]) -> Schema:
+    """What is said of each fixed key."""
+    found = {name: {"description": key.about, **of(key.form)} for name, key in keys.items()}
+    return {"properties": found} if found else {}
+
+
 def _record(keys: dict[str, Key]) -> Schema:
-    properties = {name: {"description": key.about, **of(key.form)} for name, key in keys.items()}
     required = [name for name, key in keys.items() if key.required]
     return {
         "type": "object",
-        "properties": properties,
+        **_properties(keys),
         "additionalProperties": False,
         **({"required": required} if required else {}),
     }

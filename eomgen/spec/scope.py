@@ -46,8 +46,28 @@ USES: dict[str, frozenset[str]] = {  # what a formula describes -> what may stan
     "initial value": FIXED,
     "range": FIXED,
     "equilibrium": FIXED | {"input"},
+    "holonomic constraint": PLACED,
+    "nonholonomic constraint": PLACED | {"coordinate'", "prescribed'", "speed"},
+    "unilateral constraint": PLACED,
+    "equation of places": frozenset({"point", "body"}),
+    "restitution": FIXED,
+    "friction": FIXED,
     "output": EVERYTHING,
     "claim": EVERYTHING,
+}
+
+BETWEEN_RATES = "write 'nonholonomic' for a relation between rates"
+OF_POSITIONS = "a gap is a formula of positions; it is differentiated for you"
+KNOWN_MOTION = "a motion that is known beforehand stands under 'prescribed'"
+INSTEAD = {  # use and what stands in it -> remedy
+    ("holonomic constraint", "coordinate'"): BETWEEN_RATES,
+    ("holonomic constraint", "speed"): BETWEEN_RATES,
+    ("holonomic constraint", "input"): KNOWN_MOTION,
+    ("nonholonomic constraint", "coordinate''"): "a constraint holds no accelerations",
+    ("nonholonomic constraint", "input"): KNOWN_MOTION,
+    ("unilateral constraint", "coordinate'"): OF_POSITIONS,
+    ("unilateral constraint", "input"): KNOWN_MOTION,
+    ("equation of places", "coordinate"): "name two points or bodies, or write a scalar equation",
 }
 
 
@@ -123,15 +143,15 @@ def resolve(name: Name, scene: Scene, use: str, local: Local | None = None) -> K
             f"unknown name '{name.name}'",
             suggestion(name.name, usable(scene.names, use)),
         )
-    if name.order >= len(known.expressions):
+    kind = known.kind + PRIMES[name.order]
+    if known.expressions and name.order >= len(known.expressions):
         raise Mistake(
             name.span, "E302", f"'{name.span.text}': {article(known.kind)} has no such rate"
         )
-    if known.kind + PRIMES[name.order] not in USES[use] and known.kind != "constant":
-        what = WORDS[known.kind + PRIMES[name.order]]
-        raise Mistake(
-            name.span, "E302", f"'{name.span.text}' is {what} and may not stand in {article(use)}"
-        )
+    if kind not in USES[use] and known.kind != "constant":
+        what = WORDS.get(kind, WORDS[known.kind])
+        message = f"'{name.span.text}' is {what} and may not stand in {article(use)}"
+        raise Mistake(name.span, "E302", message, INSTEAD.get((use, kind), ""))
     return known
 
 
@@ -140,11 +160,17 @@ def usable(names: Mapping[str, Known], use: str) -> list[str]:
     return [n for n, known in names.items() if known.kind in USES[use]]
 
 
+UNCOUNTED = (
+    *("gravity", "dissipation", "damping", "stiffness", "kinetic energy", "time"),
+    *("restitution", "friction"),
+)
+
+
 def article(noun: str) -> str:
     """`an input`, `a force`."""
-    if noun in ("gravity", "dissipation", "damping", "stiffness", "kinetic energy", "time"):
+    if noun in UNCOUNTED:
         return noun
-    return f"an {noun}" if noun[0] in "aeiou" else f"a {noun}"
+    return f"an {noun}" if noun[0] in "aeio" else f"a {noun}"
 
 
 WORDS = {
@@ -161,4 +187,6 @@ WORDS = {
     "input": "an input",
     "point": "a point",
     "body": "a body",
+    "output": "an output",
+    "reaction": "a reaction",
 }

@@ -10,10 +10,6 @@ from eomgen.spec.reader import Entry, Mapping, Node, Scalar, Sequence
 
 SHAPES = {Leaf: Scalar, Items: Sequence, Table: Mapping, Record: Mapping}
 WORDS = {Leaf: "a text", Items: "a list", Table: "a map of names", Record: "a map of keys"}
-UNSUPPORTED = {  # path below the top -> code and what is meant
-    ("constraints",): ("E601", "constraints"),
-    ("initial", "guess"): ("E604", "'guess', a key for constraints"),
-}
 WHOLE = re.compile("[0-9]{1,6}")
 MAY_BE_EMPTY = ("quantity", "unit")  # a parameter without value, a coordinate without unit
 
@@ -27,8 +23,8 @@ def conform(node: Node, form: Form, ledger: Ledger, path: tuple[str, ...] = ()) 
             return ledger.attempt(_leaf, node, form, path)
         case Items() if isinstance(node, Sequence):
             return _items(node, form, ledger, path)
-        case Table(inner) if isinstance(node, Mapping):
-            return _table(node, inner, ledger, path)
+        case Table() if isinstance(node, Mapping):
+            return _table(node, form, ledger, path)
         case Record(keys) if isinstance(node, Mapping):
             return _record(node, dict(keys), ledger, path)
     _note_shape(node, (form,), ledger, path)
@@ -81,11 +77,14 @@ def _items(node: Sequence, form: Items, ledger: Ledger, path: tuple[str, ...]) -
     return None
 
 
-def _table(node: Mapping, inner: Form, ledger: Ledger, path: tuple[str, ...]) -> Mapping:
+def _table(node: Mapping, form: Table, ledger: Ledger, path: tuple[str, ...]) -> Mapping:
     entries = []
     for entry in node.entries:
-        if _refused_for_now(entry, ledger, path):
+        key = form.keys.get(entry.key.text)
+        if key is None and form.keys and isinstance(entry.value, Mapping):
+            _note_unknown(entry, form.keys, ledger, path)
             continue
+        inner = key.form if key else form.of
         value = conform(entry.value, inner, ledger, (*path, entry.key.text))
         if value is not None:
             entries.append(Entry(entry.key, value))
@@ -97,12 +96,9 @@ def _record(
 ) -> Mapping | None:
     entries = []
     for entry in node.entries:
-        if _refused_for_now(entry, ledger, path):
-            continue
         key = keys.get(entry.key.text)
         if key is None:
-            message = f"unknown key {shown(entry.key.text)}" + (f" in {path[-1]}" if path else "")
-            ledger.note(Mistake(entry.key, "E104", message, suggestion(entry.key.text, keys)))
+            _note_unknown(entry, keys, ledger, path)
             continue
         value = conform(entry.value, key.form, ledger, (*path, entry.key.text))
         if value is not None:
@@ -111,6 +107,11 @@ def _record(
     whole = all(name in {e.key.text for e in entries} for name, k in keys.items() if k.required)
     sound = len(entries) == len(node.entries)
     return Mapping(tuple(entries), node.line, node.column, sound) if whole or not path else None
+
+
+def _note_unknown(entry: Entry, keys: Map[str, Key], ledger: Ledger, path: tuple[str, ...]) -> None:
+    message = f"unknown key {shown(entry.key.text)}" + (f" in {path[-1]}" if path else "")
+    ledger.note(Mistake(entry.key, "E104", message, suggestion(entry.key.text, keys)))
 
 
 def _note_missing(
@@ -131,16 +132,6 @@ def is_misspelt(name: str, node: Mapping, keys: Map[str, Key]) -> bool:
     """Whether a key is not there but an unknown one looks like it."""
     astray = [e.key.text[:60] for e in node.entries if e.key.text not in keys]
     return node.get(name) is None and bool(get_close_matches(name, astray, 1, 0.6))
-
-
-def _refused_for_now(entry: Entry, ledger: Ledger, path: tuple[str, ...]) -> bool:
-    found = UNSUPPORTED.get((*path, entry.key.text))
-    if found is None:
-        return False
-    code, what = found
-    hint = "use free coordinates, as many as degrees of freedom"
-    ledger.note(Mistake(entry.key, code, f"not supported yet: {what}", hint))
-    return True
 
 
 def _named(path: tuple[str, ...]) -> str:

@@ -92,7 +92,7 @@ Tree = Number | Quantity | Name | Vector | Sum | Product | Power | Call
 
 @dataclass(frozen=True)
 class Relation:
-    """left = right or left >= right."""
+    """left = right, left >= right or left <= right."""
 
     left: Tree
     sign: str

@@ -1,0 +1,1 @@
+"""What constraints leave free: admissible states, rank, integrability, a card for each."""

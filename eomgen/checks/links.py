@@ -1,0 +1,120 @@
+"""Linked scenes: rows in both algebras are the same, and all formulations agree."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from eomgen.algebra.arithmetic import FLOAT
+from eomgen.analysis.admissible import Admissible
+from eomgen.checks.evaluation import Bench, benches, over
+from eomgen.checks.samples import Samples
+from eomgen.compile import Machine
+from eomgen.errors import CheckError
+from eomgen.formulation import Formulation, Linked
+from eomgen.mechanics.equations import ConstraintRow, Derivation
+
+TOLERANCE = 1e-10
+
+
+def rows(derivation: Derivation, machine: Machine, samples: Samples) -> float:
+    """The worst relative difference of J and gamma between closed form and graph.
+
+    Raises:
+        CheckError: they differ.
+    """
+    error = max(over(benches(machine, samples), lambda at, _: _row_error(derivation, at)))
+    if error > TOLERANCE:
+        raise CheckError(
+            f"the constraint rows of closed form and graph differ, relative error {error:.1e}: "
+            "this is a defect of eomgen, nothing was written"
+        )
+    return error
+
+
+def _row_error(derivation: Derivation, at: Bench) -> Any:
+    form = at.forms()
+    worst: Any = 0.0
+    for closed, row in zip(derivation.constraints, at.machine.rows, strict=True):
+        graph = at.nodes([*row.jacobian, row.gamma])
+        values = [form(f) for f in _forms(closed)]
+        scale = sum(abs(v) for v in (*graph, *values))
+        difference = sum(abs(a - b) for a, b in zip(graph, values, strict=True))
+        worst = at.arithmetic.functions["max"](worst, difference / (scale + (scale == 0)))
+    return worst
+
+
+def _forms(row: ConstraintRow) -> list[Any]:
+    return [*row.jacobian, row.gamma]
+
+
+def samples_of(scene: Linked, states: Sequence[Admissible], drawn: Samples) -> Samples:
+    """Admissible states as samples, with the inputs and accelerations of random ones."""
+    count = len(states)
+    found = [s.state for s in states]
+    size = range(len(scene.model.coordinates))
+    return Samples(
+        count=count,
+        time=[float(s.time) for s in found],
+        state=[
+            *([float(s.coordinates[j]) for s in found] for j in size),
+            *([float(s.rates[j]) for s in found] for j in size),
+        ],
+        inputs=[column[:count] for column in drawn.inputs],
+        parameters=[[float(s.parameters[k]) for s in found] for k in range(len(drawn.parameters))],
+        accelerations=[column[:count] for column in drawn.accelerations],
+    )
+
+
+def formulations_agree(
+    scene: Linked, formulations: Sequence[Formulation], samples: Samples
+) -> float:
+    """The worst relative difference of accelerations at admissible states.
+
+    Raises:
+        CheckError: two formulations differ.
+    """
+    worst = 0.0
+    for i in range(samples.count):
+        found = {f.name: accelerations(scene, f, samples, i) for f in formulations}
+        reference = found.pop("multiplier")
+        scale = max(*map(abs, reference.values()), _free_size(scene, samples, i)) or 1.0
+        for name, values in found.items():
+            error = max(abs(v - reference[q]) for q, v in values.items()) / scale
+            worst = max(worst, error)
+            if not error <= TOLERANCE:
+                raise CheckError(
+                    f"formulation {name} and multiplier differ at an admissible state, relative "
+                    f"error {error:.1e}: this is a defect of eomgen, nothing was written"
+                )
+    return worst
+
+
+def _free_size(scene: Linked, samples: Samples, index: int) -> float:
+    """How fast the scene would accelerate without its constraints: the size of what cancels."""
+    state = [column[index] for column in samples.state]
+    free = _at(scene.machine, samples, index, state).nodes(scene.machine.schur.free)
+    return max(abs(float(v)) for v in free)
+
+
+def accelerations(
+    scene: Linked, formulation: Formulation, samples: Samples, index: int
+) -> dict[str, float]:
+    """q'' by coordinate, for the coordinates that the formulation has."""
+    model = formulation.machine.model
+    names = [c.name for c in scene.model.coordinates]
+    values = [column[index] for column in samples.state]
+    own = [c.name for c in model.coordinates]
+    speeds = [s.name.rstrip("'") for s in model.speeds] or own
+    state = [values[names.index(n)] for n in own]
+    state += [values[len(names) + names.index(n)] for n in speeds]
+    at = _at(formulation.machine, samples, index, state)
+    found = at.nodes(formulation.machine.accelerations)
+    return {name: float(value) for name, value in zip(own, found, strict=True)}
+
+
+def _at(machine: Machine, samples: Samples, index: int, state: Sequence[float]) -> Bench:
+    arguments = {n: [c[index] for c in columns] for n, columns in samples.arguments().items()}
+    arguments["state"] = list(state)
+    leaves = {n: arguments[n.datum.argument][n.datum.index] for n in machine.leaves}
+    return Bench(machine, leaves, FLOAT)

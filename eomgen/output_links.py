@@ -1,0 +1,54 @@
+"""What the analysis decided of a scene's constraints, as the record that the notes show."""
+
+from __future__ import annotations
+
+from eomgen.analysis.cards import Card, Report
+from eomgen.formulation import Formulation
+from eomgen.render.notes_links import Combination, LinkCard, Links
+
+SENTENCES = {
+    "en": "Formulation of the generated code: {name} ({why}).",
+    "es": "Formulación del código generado: {name} ({why}).",
+}
+
+
+def links(report: Report, chosen: Formulation, language: str) -> Links:
+    """The record of a scene's constraints."""
+    freedom = report.freedom
+    said = SENTENCES[language].format(name=chosen.name, why=chosen.why)
+    return Links(
+        cards=tuple(_card(card, report) for card in report.cards),
+        coordinates=freedom.coordinates,
+        rank=freedom.rank,
+        degrees_of_freedom=freedom.degrees_of_freedom,
+        minimal_coordinates=freedom.minimal_coordinates,
+        states=freedom.states,
+        independent=freedom.basis.independent,
+        displacements=freedom.basis.formulas,
+        combined=tuple(
+            Combination(tuple(row for row, _ in found.shares), found.relation)
+            for found in report.integrability.combinations
+        ),
+        is_time_counted=report.integrability.with_time,
+        warnings=freedom.warnings,
+        sentences=(said,),
+    )
+
+
+def _card(card: Card, report: Report) -> LinkCard:
+    relations = {row: h.relation for h in card.hidden for row, _ in h.shares}
+    return LinkCard(
+        name=card.name,
+        text=card.text,
+        rows=card.rows,
+        is_bilateral=card.is_bilateral,
+        is_scleronomic=card.is_scleronomic,
+        is_holonomic=card.is_holonomic,
+        is_stated_in_rates=card.kind == "nonholonomic",
+        residuals=card.residuals,
+        rates=card.rates,
+        virtual=card.virtual,
+        hidden=tuple(relations.get(row) for row in card.rows),
+        growth=() if card.is_holonomic else report.integrability.growth,
+        redundant=card.redundant,
+    )

@@ -1,0 +1,53 @@
+"""What the user wants of a linked scene: a formulation, and stabilised rows if asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from eomgen.errors import UsageError
+
+NAMES = ("auto", "minimal", "nullspace", "multiplier")
+LARGEST = Fraction(1, 5)  # alpha * h: above, Baumgarte's terms cost the integrator its order
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """A formulation of `NAMES`; baumgarte: alpha [1/s], zero for none."""
+
+    formulation: str = "auto"
+    baumgarte: Fraction = Fraction(0)
+
+
+AUTO = Wanted()
+
+
+def wanted(formulation: str, baumgarte: str | None, step: str | None) -> Wanted:
+    """The record of what the command line was given, alpha capped at 0.2/h for the step h [s].
+
+    Raises:
+        UsageError: a number is no positive decimal, the step is missing, or alpha is too large.
+    """
+    if baumgarte is None and step is None:
+        return Wanted(formulation)
+    if baumgarte is None or step is None:
+        raise UsageError("--baumgarte ALPHA needs --step H, the step it will be integrated with")
+    if formulation not in ("auto", "multiplier"):
+        raise UsageError(f"--baumgarte stabilises multipliers, not the formulation {formulation}")
+    alpha, h = _positive(baumgarte, "--baumgarte"), _positive(step, "--step")
+    if alpha * h > LARGEST:
+        raise UsageError(
+            f"--baumgarte {baumgarte}: at most {float(LARGEST / h):g} for the step {step} "
+            "(0.2/h): larger values lower the order of the integrator"
+        )
+    return Wanted("multiplier", alpha)
+
+
+def _positive(text: str, what: str) -> Fraction:
+    try:
+        value = Fraction(text)
+    except (ValueError, ZeroDivisionError):
+        value = Fraction(0)
+    if value <= 0 or "/" in text or len(text) > 40:
+        raise UsageError(f"{what}: {text[:40]!r} is not a positive decimal number")
+    return value
