@@ -7,24 +7,31 @@ from __future__ import annotations
 
 import gc
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 import click
 
 from eomgen import __version__, files
-from eomgen.errors import EomgenError, SpecError, UsageError
-from eomgen.wanted import AUTO, NAMES, Wanted, wanted
-
-if TYPE_CHECKING:
-    from eomgen.study import Study
+from eomgen.cli_common import (
+    complain,
+    decoded,
+    derived,
+    epilog,
+    format_option,
+    formulation_option,
+    language_option,
+    print_files,
+    reporting,
+    spec_argument,
+    studied,
+    templates_option,
+)
+from eomgen.errors import EomgenError, UsageError
+from eomgen.wanted import Wanted, wanted
 
 COLLECT_RARELY = 200_000  # a command lives for a second; looking for circles would take a tenth
 SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
-FORMATS = click.Choice(["text", "json", "github"])
-LANGUAGES = click.Choice(["en", "es"])
 TARGET_NAMES = ("latex", "c", "python", "text")
 
 EXAMPLES = """\b
@@ -38,38 +45,13 @@ Examples:
 Exit codes: 0 done, 1 a check failed, 2 wrong input."""
 
 
-def _epilog(*lines: str) -> str:
-    return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
-
-
-spec_argument = click.argument("spec", type=str)
-language_option = click.option(
-    "--lang", "language", type=LANGUAGES, default="en", show_default=True, help="Language of prose."
-)
-format_option = click.option(
-    "--format", "format_", type=FORMATS, default="text", show_default=True, help="How faults look."
-)
-templates_option = click.option(
-    "--templates", type=click.Path(path_type=Path), help="Folder of your own templates."
-)
-
-
-formulation_option = click.option(
-    "--formulation",
-    type=click.Choice(NAMES),
-    default="auto",
-    show_default=True,
-    help="Equations of a scene with constraints.",
-)
-
-
 @click.group(context_settings=SETTINGS, epilog=EXAMPLES)
 @click.version_option(__version__, prog_name="eomgen")
 def commands() -> None:
     """Equations of motion from one text file: lecture notes, C and Python, proven to agree."""
 
 
-@commands.command(epilog=_epilog("eomgen derive pendulum.yaml --steps", "eomgen derive - <p.yaml"))
+@commands.command(epilog=epilog("eomgen derive pendulum.yaml --steps", "eomgen derive - <p.yaml"))
 @spec_argument
 @click.option("--steps", is_flag=True, help="Show every partial derivative.")
 @language_option
@@ -81,12 +63,12 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
     from eomgen.outputs import Wish, rendered
 
     wish = Wish(("text",), wishes["language"], wishes["templates"], wishes["steps"])
-    (text,) = rendered(_study(spec, format_, Wanted(formulation)), wish).values()
+    (text,) = rendered(studied(spec, format_, Wanted(formulation)), wish).values()
     click.echo(text, nl=False)
 
 
 @commands.command(
-    epilog=_epilog("eomgen generate arm.yaml -o out", "eomgen generate arm.yaml -t python -o -")
+    epilog=epilog("eomgen generate arm.yaml -o out", "eomgen generate arm.yaml -t python -o -")
 )
 @spec_argument
 @click.option("-o", "--output", default=".", show_default=True, help="Folder; - is stdout.")
@@ -117,25 +99,17 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
 
     targets = wishes["targets"] or ("latex", "c", "python")
     wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"])
-    with _reporting(format_, files.shown(spec)):
+    with reporting(format_, files.shown(spec)):
         choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
-    made = rendered(_study(spec, format_, choice), wish)
+    made = rendered(studied(spec, format_, choice), wish)
     if output == files.STANDARD:
-        _print_files(made)
+        print_files(made)
         return
     for path in files.write_all(Path(output), made, force=force):
         click.echo(str(path))
 
 
-def _print_files(made: dict[str, str]) -> None:
-    """Several files on one stream are told apart by a line each."""
-    for name, text in made.items():
-        if len(made) > 1:
-            click.echo(f"==> {name} <==")
-        click.echo(text, nl=False)
-
-
-@commands.command(epilog=_epilog("eomgen check specs/*.yaml", "eomgen check a.yaml --format json"))
+@commands.command(epilog=epilog("eomgen check specs/*.yaml", "eomgen check a.yaml --format json"))
 @click.argument("specs", nargs=-1, required=True)
 @format_option
 def check(specs: tuple[str, ...], format_: str) -> None:
@@ -145,15 +119,15 @@ def check(specs: tuple[str, ...], format_: str) -> None:
     worst = 0
     for spec in specs:
         try:
-            click.echo(summary(files.shown(spec), _derived(spec), format_))
+            click.echo(summary(files.shown(spec), derived(spec), format_))
         except EomgenError as error:
-            _complain(error, format_, files.shown(spec), err=format_ != "json")
+            complain(error, format_, files.shown(spec), err=format_ != "json")
             worst = max(worst, error.exit_code)
     sys.exit(worst)
 
 
 @commands.command(
-    epilog=_epilog("eomgen evaluate arm.yaml --state state.json --digits 50 --using interpreter")
+    epilog=epilog("eomgen evaluate arm.yaml --state state.json --digits 50 --using interpreter")
 )
 @spec_argument
 @click.option("--state", default=None, help="JSON file of states; - is stdin.")
@@ -179,15 +153,15 @@ def evaluate(spec: str, state: str | None, format_: str, **wishes: Any) -> None:
 
     if spec == state == files.STANDARD:
         raise UsageError("the spec and the state cannot both come from standard input")
-    study = _study(spec, format_)
-    with _reporting(format_, files.shown(spec if state is None else state)):
-        text = "{}" if state is None else _decoded(state)
+    study = studied(spec, format_)
+    with reporting(format_, files.shown(spec if state is None else state)):
+        text = "{}" if state is None else decoded(state)
         results = answers(study, text, Question(**wishes))
     click.echo(json.dumps(results, indent=2, ensure_ascii=False))
 
 
 @commands.command(
-    epilog=_epilog(
+    epilog=epilog(
         "eomgen statics four_bar.yaml --input tau=0.2",
         "eomgen statics four_bar.yaml -t latex -o out",
         "eomgen statics truss.yaml --format json",
@@ -218,27 +192,20 @@ def statics(spec: str, format_: str, output: str, force: bool, **wishes: Any) ->
     load = rest.Load(wishes["inputs"], wishes["parameters"], wishes["time"])
     sheet = rest.Sheet(wishes["target"] or "text", wishes["language"], wishes["templates"])
     text = files.read(spec)
-    with _reporting(format_, files.shown(spec)):
+    with reporting(format_, files.shown(spec)):
         answer = rest.solved(text, files.shown(spec), load)
     if is_json:
         click.echo(rest.as_json(answer))
         return
     made = rest.rendered(answer, sheet)
     if output == files.STANDARD:
-        _print_files(made)
+        print_files(made)
         return
     for path in files.write_all(Path(output), made, force=force):
         click.echo(str(path))
 
 
-def _decoded(path: str) -> str:
-    try:
-        return files.read(path).decode()
-    except UnicodeDecodeError as error:
-        raise UsageError(f"not UTF-8 text (byte {error.start})") from error
-
-
-@commands.command(epilog=_epilog("eomgen new my_system", "eomgen new crane --like furuta_pendulum"))
+@commands.command(epilog=epilog("eomgen new my_system", "eomgen new crane --like furuta_pendulum"))
 @click.argument("name")
 @click.option("--like", default="slider_pendulum", show_default=True, help="Example to start from.")
 def new(name: str, like: str) -> None:
@@ -249,7 +216,7 @@ def new(name: str, like: str) -> None:
         click.echo(str(path))
 
 
-@commands.command(epilog=_epilog("eomgen examples", "eomgen examples copy furuta_pendulum"))
+@commands.command(epilog=epilog("eomgen examples", "eomgen examples copy furuta_pendulum"))
 @click.argument("action", type=click.Choice(["list", "copy"]), default="list")
 @click.argument("names", nargs=-1)
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=Path(), help="Folder.")
@@ -271,7 +238,7 @@ def _takes_no_names(names: tuple[str, ...]) -> None:
         raise click.UsageError(f"list takes no names: {' '.join(names)}")
 
 
-@commands.command(epilog=_epilog("eomgen schema > eomgen.schema.json"))
+@commands.command(epilog=epilog("eomgen schema > eomgen.schema.json"))
 def schema() -> None:
     """Print the JSON Schema of the language, for editors."""
     from eomgen import shelf
@@ -279,7 +246,7 @@ def schema() -> None:
     click.echo(shelf.schema_text(), nl=False)
 
 
-@commands.command(epilog=_epilog("eomgen templates", "eomgen templates eject c/model.c.j2 -o mine"))
+@commands.command(epilog=epilog("eomgen templates", "eomgen templates eject c/model.c.j2 -o mine"))
 @click.argument("action", type=click.Choice(["list", "eject"]), default="list")
 @click.argument("names", nargs=-1)
 @click.option(
@@ -296,41 +263,6 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
         return
     for path in shelf.eject_templates(names, output):
         click.echo(str(path))
-
-
-def _study(spec: str, format_: str, choice: Wanted = AUTO) -> Study:
-    """The study of a spec; its faults are shown as asked and end the command."""
-    with _reporting(format_, files.shown(spec)):
-        return _derived(spec, choice)
-
-
-@contextmanager
-def _reporting(format_: str, source: str) -> Iterator[None]:
-    """Mistakes in `source` are shown as asked and end the command."""
-    try:
-        yield
-    except EomgenError as error:
-        _complain(error, format_, source)
-        sys.exit(error.exit_code)
-
-
-def _derived(spec: str, choice: Wanted = AUTO) -> Study:
-    text = files.read(spec)
-    from eomgen import study
-
-    return study.of_text(text, files.shown(spec), choice)
-
-
-def _complain(error: EomgenError, format_: str, source: str, *, err: bool = True) -> None:
-    """The error in words: faults with their places, or one line for each mistake."""
-    if isinstance(error, SpecError):
-        from eomgen.spec.report import render
-
-        click.echo(render(error.faults, format_), err=err)
-        return
-    from eomgen.outputs import complaint
-
-    click.echo(complaint(error, format_, source), err=err)
 
 
 def main() -> NoReturn:

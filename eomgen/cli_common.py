@@ -1,0 +1,99 @@
+"""What the commands share: options, reading a spec, and how a mistake is shown."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from eomgen import files
+from eomgen.errors import EomgenError, SpecError, UsageError
+from eomgen.wanted import AUTO, NAMES, Wanted
+
+if TYPE_CHECKING:
+    from eomgen.study import Study
+
+FORMATS = click.Choice(["text", "json", "github"])
+LANGUAGES = click.Choice(["en", "es"])
+
+
+def epilog(*lines: str) -> str:
+    """Examples under a command's help."""
+    return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
+
+
+spec_argument = click.argument("spec", type=str)
+language_option = click.option(
+    "--lang", "language", type=LANGUAGES, default="en", show_default=True, help="Language of prose."
+)
+format_option = click.option(
+    "--format", "format_", type=FORMATS, default="text", show_default=True, help="How faults look."
+)
+templates_option = click.option(
+    "--templates", type=click.Path(path_type=Path), help="Folder of your own templates."
+)
+
+
+formulation_option = click.option(
+    "--formulation",
+    type=click.Choice(NAMES),
+    default="auto",
+    show_default=True,
+    help="Equations of a scene with constraints.",
+)
+
+
+def print_files(made: dict[str, str]) -> None:
+    """Several files on one stream are told apart by a line each."""
+    for name, text in made.items():
+        if len(made) > 1:
+            click.echo(f"==> {name} <==")
+        click.echo(text, nl=False)
+
+
+def decoded(path: str) -> str:
+    """The text of a file; - is standard input."""
+    try:
+        return files.read(path).decode()
+    except UnicodeDecodeError as error:
+        raise UsageError(f"not UTF-8 text (byte {error.start})") from error
+
+
+def studied(spec: str, format_: str, choice: Wanted = AUTO) -> Study:
+    """The study of a spec; its faults are shown as asked and end the command."""
+    with reporting(format_, files.shown(spec)):
+        return derived(spec, choice)
+
+
+@contextmanager
+def reporting(format_: str, source: str) -> Iterator[None]:
+    """Mistakes in `source` are shown as asked and end the command."""
+    try:
+        yield
+    except EomgenError as error:
+        complain(error, format_, source)
+        sys.exit(error.exit_code)
+
+
+def derived(spec: str, choice: Wanted = AUTO) -> Study:
+    """The study of a spec; its faults are raised."""
+    text = files.read(spec)
+    from eomgen import study
+
+    return study.of_text(text, files.shown(spec), choice)
+
+
+def complain(error: EomgenError, format_: str, source: str, *, err: bool = True) -> None:
+    """The error in words: faults with their places, or one line for each mistake."""
+    if isinstance(error, SpecError):
+        from eomgen.spec.report import render
+
+        click.echo(render(error.faults, format_), err=err)
+        return
+    from eomgen.outputs import complaint
+
+    click.echo(complaint(error, format_, source), err=err)
