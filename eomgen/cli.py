@@ -14,12 +14,14 @@ import click
 
 from eomgen import __version__, files
 from eomgen.cli_common import (
+    compensated_option,
     complain,
     decoded,
     derived,
     epilog,
     format_option,
     formulation_option,
+    integrator_option,
     language_option,
     print_files,
     reporting,
@@ -92,16 +94,31 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 @formulation_option
 @click.option("--baumgarte", metavar="ALPHA", help="Stabilise multipliers [1/s], only if asked.")
 @click.option("--step", metavar="H", help="The step [s] that caps ALPHA at 0.2/H.")
+@integrator_option
+@compensated_option
 @format_option
 def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -> None:
     """Write lecture notes, C and Python for SPEC."""
     from eomgen.outputs import Wish, rendered
 
     targets = wishes["targets"] or ("latex", "c", "python")
-    wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"])
+    integrators = wishes["integrators"]
+    if wishes["compensated"] and not integrators:
+        raise UsageError("--compensated is how integrators add: say --integrator too")
+    targets += ("c-steps",) if integrators else ()
+    wish = Wish(
+        targets,
+        wishes["language"],
+        wishes["templates"],
+        wishes["steps"],
+        integrators,
+        wishes["compensated"],
+    )
     with reporting(format_, files.shown(spec)):
         choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
-    made = rendered(studied(spec, format_, choice), wish)
+    study = studied(spec, format_, choice)
+    with reporting(format_, files.shown(spec)):
+        made = rendered(study, wish)
     if output == files.STANDARD:
         print_files(made)
         return

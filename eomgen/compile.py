@@ -92,10 +92,8 @@ class Machine:
             return self.linked.accelerations, self.linked.pivots
         matrix, bias = self.equations.mass_matrix, self.equations.bias
         right = [q - h for q, h in zip(self.equations.generalized_forces, bias, strict=True)]
-        if len(right) > LARGEST_UNROLLED:
-            return tuple(ldl.solve_in_loop(matrix, right)), self.pivots
-        (solution,), pivots = ldl.solve(matrix, right)
-        return tuple(solution), self.pivots + pivots
+        solution, pivots = solved(matrix, right)
+        return solution, self.pivots + pivots
 
     @cached_property
     def rates(self) -> tuple[Node, ...]:
@@ -124,6 +122,16 @@ class Machine:
             bindings = {c.acceleration: a for c, a in pairs}
         algebra = self.kinematics.algebra.extended(bindings)
         return tuple(algebra.of(o.formula) for o in self.model.outputs)
+
+
+def solved(
+    matrix: Sequence[Sequence[Node]], right: Sequence[Node]
+) -> tuple[tuple[Node, ...], ldl.Pivots]:
+    """x of A x = b, unrolled up to `LARGEST_UNROLLED`, else in a loop that checks its pivots."""
+    if len(right) > LARGEST_UNROLLED:
+        return tuple(ldl.solve_in_loop(matrix, right)), ()
+    (solution,), pivots = ldl.solve(matrix, right)
+    return tuple(solution), pivots
 
 
 def _accelerations(model: Model) -> set[sp.Symbol]:

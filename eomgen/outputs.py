@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from eomgen.errors import EomgenError
+from eomgen.integrators.steps import Steps
 from eomgen.render.notes import Notes
 from eomgen.render.targets import TARGETS, Named, render
 from eomgen.render.templating import environment
@@ -25,6 +26,8 @@ class Wish:
     language: str = "en"
     templates: Path | None = None
     steps: bool = False
+    integrators: tuple[str, ...] = ()
+    compensated: bool = False
 
 
 def _notes(study: Study, wish: Wish) -> Named:
@@ -38,13 +41,20 @@ def _notes(study: Study, wish: Wish) -> Named:
 
 
 def _program(study: Study, wish: Wish) -> Named:
-    return study.program
+    return _steps(study, wish).program if wish.integrators else study.program
+
+
+def _steps(study: Study, wish: Wish) -> Steps:
+    from eomgen import stepping
+
+    return stepping.of(study, wish.integrators, compensated=wish.compensated)
 
 
 SUBJECTS: dict[str, Callable[[Study, Wish], Named]] = {
     "latex": _notes,
     "text": _notes,
     "c": _program,
+    "c-steps": _steps,
     "python": _program,
 }
 
