@@ -29,6 +29,7 @@ from eomgen.cli_common import (
     studied,
     templates_option,
 )
+from eomgen.cli_simulate import simulate
 from eomgen.errors import EomgenError, UsageError
 from eomgen.wanted import Wanted, wanted
 
@@ -280,6 +281,9 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
         return
     for path in shelf.eject_templates(names, output):
         click.echo(str(path))
+
+
+commands.add_command(simulate)
 
 
 def main() -> NoReturn:

@@ -10,8 +10,8 @@ from eomgen.algebra.graph import Node, sqrt
 from eomgen.checks import power
 from eomgen.compile import Machine
 from eomgen.compile_contacts import Touching
-from eomgen.mechanics import contacts_motion
-from eomgen.mechanics.contacts import Contact
+from eomgen.mechanics import contacts_motion, multipliers
+from eomgen.mechanics.contacts import Contact, bilateral
 from eomgen.mechanics.contacts_modes import SPEED, Mode
 from eomgen.mechanics.contacts_motion import Motion
 from eomgen.mechanics.vectors import dot
@@ -27,6 +27,35 @@ def functions(machine: Machine, touching: Touching | None = None) -> tuple[Funct
     if touching is None:
         return (plain,)
     return (plain, *_modes(touching, stored, supplied))
+
+
+def projections(touching: Touching) -> Iterator[Function]:
+    """Of every mode: positions with its gaps closed, and rates with which they stay closed."""
+    m = touching.machine
+    coordinates = [m.kinematics.algebra.of(c.symbol) for c in m.model.coordinates]
+    for mode in touching.modes:
+        if not mode.active:
+            continue
+        contacts = [c for c in touching.contacts if c.name in mode.active]
+        rows = [*bilateral(m), *(c.row for c in contacts if c.one_sided)]
+        slips = [
+            slip
+            for c in contacts
+            if c.name in mode.sticking and c.touch is not None
+            for slip in c.touch.slips
+        ]
+        system = multipliers.schur(m.equations, rows)
+        residuals = [
+            m.kinematics.algebra.number(0) if r.residual is None else r.residual for r in rows
+        ]
+        values, pivots = multipliers.projected(system, coordinates, residuals)
+        about = f"positions with the contacts of the mode {mode.name} closed"
+        yield assemble(f"project_positions_{mode.name}", about, (len(values),), values, pivots)
+        system = multipliers.schur(m.equations, [*rows, *slips])
+        residuals = [*(r.rate for r in rows), *(s.speed for s in slips)]
+        values, pivots = multipliers.projected(system, m.rates, residuals)
+        about = f"rates with which the contacts of the mode {mode.name} stay as they are"
+        yield assemble(f"project_rates_{mode.name}", about, (len(values),), values, pivots)
 
 
 def is_conserved(machine: Machine) -> bool:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import reduce
 
 from eomgen.algebra import derive, ldl
-from eomgen.algebra.assemble import assemble
 from eomgen.algebra.arithmetic import evaluate, over
+from eomgen.algebra.assemble import assemble
 from eomgen.algebra.elementary import maximum, minimum
 from eomgen.algebra.graph import LEAVES, Node, below
 from eomgen.checks import separable
@@ -94,7 +94,10 @@ def _speed_columns(
     matrix = m.equations.mass_matrix
     loads = [q - h for q, h in zip(m.equations.generalized_forces, m.equations.bias, strict=True)]
     rights = [
-        [along(b) - dot(list(map(along, row)), solution) for b, row in zip(loads, matrix, strict=True)]
+        [
+            along(b) - dot(list(map(along, row)), solution)
+            for b, row in zip(loads, matrix, strict=True)
+        ]
         for along in directions
     ]
     columns, more = ldl.solve(matrix, *rights)

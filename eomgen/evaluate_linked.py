@@ -61,7 +61,7 @@ def evaluate(
     results = []
     for number, state in enumerate(states, 1):
         try:
-            results.append(_result(study, source, chosen, _placed(study, source, state, project)))
+            results.append(_result(study, source, chosen, placed(study, source, state, project)))
         except CheckError as error:
             raise CheckError(f"state {number}: {error}") from error
     return results
@@ -116,7 +116,7 @@ def _reactions(
     }
 
 
-def _placed(study: LinkedStudy, source: Program, state: State, project: bool) -> State:
+def placed(study: LinkedStudy, source: Program, state: State, project: bool) -> State:
     """The state itself where it is admissible, else its projection if that is wanted.
 
     Raises:

@@ -9,7 +9,6 @@ from eomgen import compile_steps
 from eomgen.compile import Machine
 from eomgen.compile_steps import Scene
 from eomgen.integrators import methods
-from eomgen.integrators.methods import Method
 from eomgen.integrators.steps import Steps
 from eomgen.program import Function, Program
 from eomgen.study import Study

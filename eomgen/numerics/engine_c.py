@@ -129,9 +129,7 @@ class MarchC:
         self.work = run.work
         full = (first + done) // grid.every - first // grid.every
         numbers = (first // grid.every + 1 + np.arange(full)) * grid.every
-        found = {
-            1 << b: (int(tally[b]), int(tally[BITS + b])) for b in range(BITS) if tally[b]
-        }
+        found = {1 << b: (int(tally[b]), int(tally[BITS + b])) for b in range(BITS) if tally[b]}
         return Rows(
             grid.start + numbers * grid.step, rows[:full].astype(float), works[:full],
             done, int(stopped[0]), found,

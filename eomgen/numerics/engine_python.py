@@ -115,7 +115,9 @@ class MarchPython:
 
 
 def _rows(
-    rows: list[tuple[float, Array, float]], size: int, end: tuple[int, int, dict[int, tuple[int, int]]]
+    rows: list[tuple[float, Array, float]],
+    size: int,
+    end: tuple[int, int, dict[int, tuple[int, int]]],
 ) -> Rows:
     steps, stopped, tally = end
     return Rows(

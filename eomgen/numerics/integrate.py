@@ -70,4 +70,6 @@ def joined(parts: Iterable[Rows]) -> Rows:
         sum(p.steps for p in found),
         found[-1].stopped,
         tally,
+        tuple(event for p in found for event in p.events),
+        sum(p.lost for p in found),
     )

@@ -44,6 +44,15 @@ class Grid:
 
 
 @dataclass(frozen=True)
+class Event:
+    """What happened to a contact at a time [s], in words."""
+
+    time: float
+    contact: str
+    what: str
+
+
+@dataclass(frozen=True)
 class Rows:
     """Times (N,), states (N, n) and the work (N,) [J] done since the start by what has no potential.
 
@@ -57,6 +66,8 @@ class Rows:
     steps: int = 0
     stopped: int = 0
     tally: Mapping[int, tuple[int, int]] = field(default_factory=dict)
+    events: tuple[Event, ...] = ()
+    lost: float = 0.0  # energy that impacts took [J]
 
 
 class Stopped(Exception):

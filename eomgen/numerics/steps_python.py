@@ -27,13 +27,16 @@ Call = Callable[[str], Function]
 Increment = Callable[[Method, Call, float, float, Array], tuple[Array, int]]
 
 
-def step(steps: Steps, method: Method, call: Call) -> Callable[[float, float, Array], tuple[Array, int]]:
+def step(
+    steps: Steps, method: Method, call: Call
+) -> Callable[[float, float, Array], tuple[Array, int]]:
     """(t, h, state) -> (next state, bits); `call` gives the functions of the program."""
     increment = INCREMENTS[_kind(steps, method)]
 
     def make(t: float, h: float, state: Array) -> tuple[Array, int]:
         change, bits = increment(method, call, t, h, state)
-        return _finished(steps, call, t + h, state + change, bits)
+        state, more = admissible(steps, call, t + h, state + change)
+        return state, bits | more
 
     return make
 
@@ -42,11 +45,16 @@ def _kind(steps: Steps, method: Method) -> str:
     """Which of `INCREMENTS` a method is for this program."""
     if method.kind == "midpoint" and steps.is_canonical:
         return "midpoint of momenta"
-    return "semi_euler of speeds" if method.kind == "semi_euler" and steps.has("rates") else method.kind
+    return (
+        "semi_euler of speeds"
+        if method.kind == "semi_euler" and steps.has("rates")
+        else method.kind
+    )
 
 
-def _finished(steps: Steps, call: Call, t: float, state: Array, bits: int) -> tuple[Array, int]:
-    """The state back on the constraints."""
+def admissible(steps: Steps, call: Call, t: float, state: Array) -> tuple[Array, int]:
+    """The state back on the constraints: one Newton step in positions, a linear solve in rates."""
+    bits = 0
     size = len(steps.program.coordinates)
     if steps.projects_positions:
         guard = call("constraint_margin")(t, state)[0] if steps.has("constraint_margin") else 1.0

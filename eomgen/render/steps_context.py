@@ -104,7 +104,10 @@ def _stage(table: Tableau, index: int) -> Stage:
 def _sum(coefficients: tuple[Fraction, ...]) -> str:
     """Sum of coefficient * k, without those that are zero."""
     parts = [
-        ("-" if a < 0 else "+", f"k{j + 1}[i]" if abs(a) == 1 else f"REAL({literal(abs(a))}) * k{j + 1}[i]")
+        (
+            "-" if a < 0 else "+",
+            f"k{j + 1}[i]" if abs(a) == 1 else f"REAL({literal(abs(a))}) * k{j + 1}[i]",
+        )
         for j, a in enumerate(coefficients)
         if a
     ]

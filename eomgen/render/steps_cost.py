@@ -113,7 +113,6 @@ ARRAYS: dict[str, Callable[[Steps, Method], int]] = {
 }
 
 
-
 def _residuals(steps: Steps) -> int:
     found = (f for f in steps.program.functions if f.name == "constraint_residuals")
     return next((f.shape[0] for f in found), 0)
