@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
@@ -22,7 +22,7 @@ from eomgen.cli_common import (
     spec_argument,
     studied,
 )
-from eomgen.errors import UsageError
+from eomgen.errors import CheckError, UsageError
 from eomgen.wanted import Wanted
 
 if TYPE_CHECKING:
@@ -33,28 +33,22 @@ METHODS = (
     "dop853", "lsoda", "radau", "cvode",
 )  # fmt: skip
 INTERRUPTED = 130  # as a shell says it of SIGINT
+Command = Callable[..., Any]
 PATIENCE = 1.0  # seconds before a bar is shown
 
 
-class Positive(click.ParamType):
-    """A finite number above zero."""
-
-    name = "number"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> float:
-        """The number of a text."""
-        try:
-            number = float(value)
-        except ValueError:
-            number = math.nan
-        if not 0 < number < math.inf:
-            self.fail(f"{value!r} is not a positive number", param, ctx)
-        return number
+def _positive(context: click.Context, option: click.Parameter, value: float | None) -> float | None:
+    """The number, which must be finite and above zero."""
+    if value is not None and not 0 < value < math.inf:
+        raise click.BadParameter(f"{value!r} is not a positive number", context, option)
+    return value
 
 
-POSITIVE = Positive()
+def positive(*names: str, **more: Any) -> Callable[[Command], Command]:
+    """An option whose value is a positive number."""
+    return click.option(*names, type=float, callback=_positive, **more)
+
+
 FILE = click.Path(dir_okay=False, path_type=Path)
 
 
@@ -66,12 +60,12 @@ FILE = click.Path(dir_okay=False, path_type=Path)
     )
 )
 @spec_argument
-@click.option("--t-end", type=POSITIVE, default=10.0, show_default=True, help="Length [s].")
+@positive("--t-end", default=10.0, show_default=True, help="Length [s].")
 @click.option("--method", type=click.Choice(METHODS), default="auto", show_default=True)
-@click.option("--step", type=POSITIVE, help="Step of a fixed-step method [s].")
-@click.option("--rtol", type=POSITIVE, help="Relative tolerance of an adaptive method.")
-@click.option("--atol", type=POSITIVE, help="Absolute one, SI.  [default: a thousandth of rtol]")
-@click.option("--output-step", type=POSITIVE, help="Time between rows [s].  [default: about 400]")
+@positive("--step", help="Step of a fixed-step method [s].")
+@positive("--rtol", help="Relative tolerance of an adaptive method.")
+@positive("--atol", help="Absolute one, SI.  [default: a thousandth of rtol]")
+@positive("--output-step", help="Time between rows [s].  [default: about 400]")
 @click.option("--state", help="JSON file with the start; - is stdin.  [default: `initial`]")
 @click.option(
     "--input", "inputs", multiple=True, metavar="NAME=VALUE", help="Constant, repeatable."
@@ -80,7 +74,7 @@ FILE = click.Path(dir_okay=False, path_type=Path)
 @click.option("--plot", type=FILE, help="SVG file: coordinates and outputs over time.")
 @click.option("--show", multiple=True, metavar="NAME", help="What to plot instead, repeatable.")
 @click.option("--animate", type=FILE, help="HTML file: the bodies in motion.")
-@click.option("--energy-tolerance", type=POSITIVE, help="Relative; above it the run is a failure.")
+@positive("--energy-tolerance", help="Relative; above it the run is a failure.")
 @click.option("--force", is_flag=True, help="Overwrite files that exist.")
 @formulation_option
 @format_option
@@ -104,9 +98,8 @@ def simulate(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 
 def _request(wishes: dict[str, Any]) -> dict[str, Any]:
     """The wishes that the run knows."""
-    names = ("t_end", "method", "step", "rtol", "atol", "output_step", "inputs", "show")
-    names += ("plot", "animate", "energy_tolerance")
-    return {name: wishes[name] for name in names}
+    other = {"output", "force", "state"}
+    return {name: value for name, value in wishes.items() if name not in other}
 
 
 def _output(wishes: dict[str, Any]) -> str | None:
@@ -130,21 +123,26 @@ def _sink(output: str | None, wishes: dict[str, Any]) -> Iterator[IO[str] | None
     if output is None or output == files.STANDARD:
         yield None if output is None else sys.stdout
         return
-    try:
-        stream = Path(output).open("w", encoding="utf-8", newline="")
-    except OSError as error:
-        raise UsageError(f"{output}: cannot be written: {error.strerror}") from error
-    with stream:
+    with _opened(output) as stream:
         yield stream
+
+
+def _opened(path: str) -> IO[str]:
+    try:
+        return Path(path).open("w", encoding="utf-8", newline="")
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be written: {error.strerror}") from error
 
 
 def _run(job: Job, stream: IO[str] | None) -> int:
     """The exit code of the run; its words go to standard error."""
     for line in job.beginning():
         click.echo(line, err=True)
-    interrupted = False
+    interrupted, faults = False, []
     try:
         _follow(job, stream)
+    except CheckError as error:
+        faults.append(str(error))
     except KeyboardInterrupt:
         interrupted = True
         click.echo(
@@ -152,7 +150,7 @@ def _run(job: Job, stream: IO[str] | None) -> int:
         )
     for line in job.ending():
         click.echo(line, err=True)
-    faults = job.faults()
+    faults += job.faults()
     for line in faults:
         click.echo(line, err=True)
     for path, text in job.drawings().items():

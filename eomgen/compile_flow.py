@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from eomgen.algebra.assemble import assemble
 from eomgen.algebra.elementary import absolute
@@ -11,6 +12,7 @@ from eomgen.checks import power
 from eomgen.compile import Machine
 from eomgen.compile_contacts import Touching
 from eomgen.mechanics import contacts_motion, multipliers
+from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.contacts import Contact, bilateral
 from eomgen.mechanics.contacts_modes import SPEED, Mode
 from eomgen.mechanics.contacts_motion import Motion
@@ -33,29 +35,31 @@ def projections(touching: Touching) -> Iterator[Function]:
     """Of every mode: positions with its gaps closed, and rates with which they stay closed."""
     m = touching.machine
     coordinates = [m.kinematics.algebra.of(c.symbol) for c in m.model.coordinates]
+    zero = m.kinematics.algebra.number(0)
     for mode in touching.modes:
         if not mode.active:
             continue
         contacts = [c for c in touching.contacts if c.name in mode.active]
         rows = [*bilateral(m), *(c.row for c in contacts if c.one_sided)]
-        slips = [
-            slip
-            for c in contacts
-            if c.name in mode.sticking and c.touch is not None
-            for slip in c.touch.slips
-        ]
-        system = multipliers.schur(m.equations, rows)
-        residuals = [
-            m.kinematics.algebra.number(0) if r.residual is None else r.residual for r in rows
-        ]
-        values, pivots = multipliers.projected(system, coordinates, residuals)
+        places = [zero if row.residual is None else row.residual for row in rows]
+        values, pivots = multipliers.projected(
+            multipliers.schur(m.equations, rows), coordinates, places
+        )
         about = f"positions with the contacts of the mode {mode.name} closed"
         yield assemble(f"project_positions_{mode.name}", about, (len(values),), values, pivots)
-        system = multipliers.schur(m.equations, [*rows, *slips])
-        residuals = [*(r.rate for r in rows), *(s.speed for s in slips)]
-        values, pivots = multipliers.projected(system, m.rates, residuals)
+        rows += [row for c in contacts if c.name in mode.sticking for row in _slip_rows(c)]
+        values, pivots = multipliers.projected(
+            multipliers.schur(m.equations, rows), m.rates, [row.rate for row in rows]
+        )
         about = f"rates with which the contacts of the mode {mode.name} stay as they are"
         yield assemble(f"project_rates_{mode.name}", about, (len(values),), values, pivots)
+
+
+def _slip_rows(contact: Contact) -> Iterator[Row[Node]]:
+    """The slip velocity of a contact as rows between rates."""
+    for slip in contact.touch.slips if contact.touch is not None else ():
+        row = contact.row
+        yield replace(row, residual=None, rate=slip.speed, jacobian=slip.jacobian, gamma=slip.gamma)
 
 
 def is_conserved(machine: Machine) -> bool:

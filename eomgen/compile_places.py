@@ -95,8 +95,8 @@ def _disc(places: _Places, machine: Machine, body: Body) -> Disc:
     tips: list[int] = []
     if body.inertia and not body.frame.along and kinematics.dimensions > 1:
         inertia = kinematics.vector(body.inertia)
-        step = len(inertia) if len(inertia) == 1 else 4
-        total = sum(inertia[::step], kinematics.algebra.number(0))
+        # the trace of a tensor in space is twice the sum of m r^2
+        total = inertia[0] if len(inertia) == 1 else (inertia[0] + inertia[4] + inertia[8]) / 2
         radius = kinematics.algebra.apply("sqrt", total / kinematics.algebra.of(body.mass))
         axes = zip(*kinematics.axes(body.name), strict=True)
         wanted = 1 if kinematics.dimensions == 2 else 3

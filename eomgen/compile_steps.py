@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import reduce
 
+import sympy as sp
+
 from eomgen.algebra import derive, ldl
 from eomgen.algebra.arithmetic import evaluate, over
 from eomgen.algebra.assemble import assemble
@@ -134,10 +136,10 @@ def _momentum_rates(scene: Scene) -> Function | None:
     if not scene.is_canonical:
         return None
     m, algebra = scene.machine, scene.machine.kinematics.algebra
-    flow: dict[object, Node] = dict(m.kinematics.flow.rates)
+    flow: dict[sp.Symbol, Node] = dict(m.kinematics.flow.rates)
     flow[TIME] = algebra.number(1)
     values = [
-        q - h + algebra.along(p, flow)  # type: ignore[arg-type]
+        q - h + algebra.along(p, flow)
         for p, q, h in zip(
             _momentum(m), m.equations.generalized_forces, m.equations.bias, strict=True
         )

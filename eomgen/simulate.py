@@ -11,7 +11,7 @@ import numpy as np
 from eomgen.errors import UsageError
 from eomgen.integrators.methods import METHODS
 from eomgen.numerics import adaptive, hybrid, integrate, steps_python
-from eomgen.numerics.records import Array, Event, Rows
+from eomgen.numerics.records import Array, Event, Function, Grid, Rows
 from eomgen.simulate_method import Choice
 from eomgen.simulate_setup import Setup, contact_scene
 
@@ -93,7 +93,7 @@ def _fixed(setup: Setup, choice: Choice, outputs: Array) -> Iterator[Rows]:
     rest = span[1] - reached
     if rest > NEARLY * choice.step:
         count = ceil(rest / choice.step - NEARLY)
-        end = integrate.Grid(reached, rest / count, count, count)
+        end = Grid(reached, rest / count, count, count)
         found = integrate.run(setup.engine, method, last.states[-1], end, _flow(setup))
         works = found.works[1:] + last.works[-1]
         yield replace(found, times=found.times[1:], states=found.states[1:], works=works)
@@ -101,18 +101,19 @@ def _fixed(setup: Setup, choice: Choice, outputs: Array) -> Iterator[Rows]:
 
 def _every(outputs: Array, step: float) -> int:
     """Steps between rows."""
-    if len(outputs) < 3:
-        return max(1, round((outputs[-1] - outputs[0]) / step))
-    return max(1, round((outputs[1] - outputs[0]) / step))
+    gap = outputs[-1] - outputs[0] if len(outputs) < 3 else outputs[1] - outputs[0]
+    return max(1, round(float(gap) / step))
 
 
 def _adaptive(setup: Setup, choice: Choice, outputs: Array) -> Iterator[Rows]:
     steps, engine = setup.steps, setup.engine
     has_project = steps.projects_positions or steps.has("project_rates")
-    known: dict[str, object] = {}
+    known: dict[str, Function] = {}
 
-    def call(name: str) -> adaptive.Function:
-        return known.setdefault(name, engine.function(name))  # type: ignore[return-value]
+    def call(name: str) -> Function:
+        if name not in known:
+            known[name] = engine.function(name)
+        return known[name]
 
     def project(t: float, y: Array) -> tuple[Array, int]:
         return steps_python.admissible(steps, call, t, y)

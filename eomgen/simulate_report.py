@@ -81,7 +81,7 @@ def faults(setup: Setup, verdict: Verdict, tolerance: float) -> Iterator[str]:
         )
     if setup.flow is not None and not verdict.relative_energy_error <= tolerance:
         yield (
-            f"W-ENERGY: the energy is off by {verdict.relative_energy_error:.2g} of its scale, more "
-            f"than {tolerance:g}: the motion is not that of the equations; take a smaller step or "
-            "rtol, another method or formulation, or say --energy-tolerance"
+            f"W-ENERGY: the energy is off by {verdict.relative_energy_error:.2g} of its scale, "
+            f"more than {tolerance:g}: the motion is not that of the equations; take a smaller "
+            "step or rtol, another method or formulation, or say --energy-tolerance"
         )

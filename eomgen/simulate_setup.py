@@ -57,7 +57,7 @@ def setup(study: Study, method: str, start: Start, extra: tuple[Function, ...] =
         UsageError: the method is not for this scene, or the compiler fails.
     """
     steps = stepping.of(study, (method,) if method in METHODS else ())
-    machine, scene = stepping.machine_of(study), stepping.scene_of(study)
+    machine = stepping.machine_of(study)
     flow = _flow(study)
     more = (compile_steps.state_jacobian(machine), *flow, *_contacts(study), *extra)
     steps = replace(steps, program=stepping.extended(steps.program, more))

@@ -46,19 +46,38 @@ ALLOWED: dict[str, set[str]] = {
     | {"compile_contacts", "evaluate_contacts"}
     | {"algebra", "evaluate", "interpreter", "reactions", "states", "study_linked"},
     "answers": RECORDS | {"evaluate_joints", "evaluate", "evaluate_linked", "states", "study"},
-    "render": RECORDS | {"algebra", "mechanics"},
-    "numerics": RECORDS | {"render", "interpreter"},
+    "integrators": {"errors", "program"},
+    "compile_flow": RECORDS | {"algebra", "checks", "compile", "compile_contacts", "mechanics"},
+    "compile_steps": RECORDS | {"algebra", "checks", "compile", "integrators", "mechanics"},
+    "compile_places": RECORDS | {"algebra", "compile", "mechanics", "render"},
+    "stepping": RECORDS | {"compile", "compile_steps", "integrators", "study"},
+    "simulate_setup": RECORDS
+    | {"checks", "compile_contacts", "compile_flow", "compile_steps", "evaluate"}
+    | {"evaluate_linked", "integrators", "mechanics", "numerics", "states", "stepping", "study"},
+    "simulate_method": RECORDS | {"integrators", "numerics", "simulate_setup", "study"},
+    "simulate": RECORDS | {"integrators", "numerics", "simulate_method", "simulate_setup"},
+    "simulate_table": RECORDS | {"numerics", "simulate_setup"},
+    "simulate_report": RECORDS
+    | {"numerics", "simulate", "simulate_method", "simulate_setup", "simulate_table"},
+    "simulate_run": RECORDS
+    | {"compile_places", "numerics", "render", "simulate", "simulate_method", "simulate_report"}
+    | {"simulate_setup", "simulate_table", "stepping", "study"},
+    "cli_simulate": {"cli_common", "errors", "files", "simulate_run", "wanted"},
+    "render": RECORDS | {"algebra", "mechanics", "integrators"},
+    "numerics": RECORDS | {"render", "interpreter", "integrators"},
     "states": RECORDS | {"mechanics"},
     "evaluate": RECORDS | {"mechanics", "compile", "interpreter", "render", "numerics", "states"},
     "files": {"errors"},
     "shelf": {"errors", "files", "render", "spec"},
     "rest": RECORDS | {"analysis", "mechanics", "render", "spec", "states"},
     "output_links": {"analysis", "formulation", "render"},
-    "outputs": RECORDS | {"output_links", "analysis", "study", "render", "checks", "spec"},
+    "outputs": RECORDS
+    | {"integrators", "output_links", "analysis", "study", "stepping", "render", "checks", "spec"},
     "cli_common": {"errors", "files", "outputs", "spec", "study", "wanted"},
     "cli": {
         "__init__",
         "cli_common",
+        "cli_simulate",
         "errors",
         "files",
         "wanted",

@@ -1,4 +1,4 @@
-"""A program with the step functions that are made for it: what the targets of integrators render."""
+"""A program with the step functions that are made for it: what targets of integrators render."""
 
 from __future__ import annotations
 

@@ -148,38 +148,26 @@ def pieces(
         try:
             start, end, dense, bits = stepper.advance()
             until = int(np.searchsorted(outputs, end, side="right"))
-            times = outputs[done:until]
-            states = _states(given, times, dense)
-            since = [0.0, *(work_of(given.flow, start, t, dense) for t in times)]
-            total = work_of(given.flow, start, end, dense)
+            times, steps = outputs[done:until], steps + 1
+            states = table([_placed(given, t, dense(t)) for t in times], len(state))
+            works = [work + work_of(given.flow, start, t, dense) for t in times]
+            work += work_of(given.flow, start, end, dense)
         except Stopped as stopped:
-            yield _rows(np.zeros(0), [], [], steps, stopped.bits, {})
+            none = np.zeros(0)
+            yield Rows(none, table([], len(state)), none, stopped=stopped.bits)
             return
-        steps += 1
         tally = {UNPROJECTED: (1, steps)} if bits & UNPROJECTED else {}
-        yield _rows(times, states, [work + w for w in since[1:]], 1, 0, tally, len(state))
-        work, done = work + total, until
+        yield Rows(times, states, np.array(works), 1, 0, tally)
+        done = until
 
 
-def _states(given: Problem, times: Array, dense: Dense) -> list[Array]:
-    """The states at output times, on the constraints."""
-    found = [dense(t) for t in times]
-    if given.project is None:
-        return found
-    return [given.project(t, y)[0] for t, y in zip(times, found, strict=True)]
+def table(states: list[Array], size: int) -> Array:
+    """States as rows; none make a table of `size` columns."""
+    return np.array(states).reshape(len(states), size)
 
 
-def _rows(
-    times: Array,
-    states: list[Array],
-    works: list[float],
-    steps: int,
-    stopped: int,
-    tally: dict[int, tuple[int, int]],
-    size: int = 0,
-) -> Rows:
-    table = np.array(states).reshape(len(states), -1) if states else np.zeros((0, size))
-    return Rows(np.array(times), table, np.array(works), steps, stopped, tally)
+def _placed(given: Problem, t: float, state: Array) -> Array:
+    return state if given.project is None else given.project(t, state)[0]
 
 
 def _sundials(given: Problem, outputs: Array, state: Array, limits: Tolerances) -> Iterator[Rows]:
@@ -191,7 +179,7 @@ def _sundials(given: Problem, outputs: Array, state: Array, limits: Tolerances) 
         if not found.success:
             raise CheckError(f"at t = {found.t:.9g} s CVODE gives up: {found.message}")
         y = np.array(found.y)
-        yield _rows(np.array([t]), [y[:-1]], [float(y[-1])], 1, 0, {})
+        yield Rows(np.array([t]), y[None, :-1], y[-1:], 1)
 
 
 def _cvode(given: Problem, limits: Tolerances) -> Any:

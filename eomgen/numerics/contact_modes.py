@@ -108,9 +108,9 @@ def hit(scene: Scene, t: float, state: Array) -> tuple[Array, tuple[Event, ...]]
             )
         state = np.concatenate([state[:n], scene.call(scene.impacts[contact], t, state)])
         found.append(Event(t, contact, f"impact at {-rates[i]:.6g}"))
+    names = ", ".join(dict.fromkeys(event.contact for event in found))
     raise CheckError(
-        f"impacts do not end at t = {t:.9g} s: {', '.join(dict.fromkeys(e.contact for e in found))} "
-        "strike in turn; lower the restitution"
+        f"impacts do not end at t = {t:.9g} s: {names} strike in turn; lower the restitution"
     )
 
 
@@ -190,9 +190,8 @@ def _force_scale(scene: Scene, modes: list[Mode], t: float, state: Array) -> flo
             values = scene.watched(mode, t, state)
         except Stopped:
             continue
-        forces = [
-            abs(v) for v, (q, _) in zip(values, mode.events, strict=True) if q in (FORCE, RESERVE)
-        ]
+        watched = zip(values, mode.events, strict=True)
+        forces = [abs(v) for v, (quantity, _) in watched if quantity in (FORCE, RESERVE)]
         largest = max([largest, *(f for f in forces if np.isfinite(f))])
     return largest
 

@@ -19,6 +19,7 @@ from eomgen.numerics.adaptive import (
     Problem,
     Stepper,
     Tolerances,
+    table,
     work_of,
 )
 from eomgen.numerics.contact_modes import NEARLY, Mode, Scene
@@ -81,7 +82,7 @@ def pieces(scene: Scene, outputs: Array, state: Array, limits: Tolerances) -> It
             states = [scene.projected(mode, s, leg.dense(s)) for s in times]
             works = [total + work_of(flow, leg.start, s, leg.dense) for s in times]
             total += work_of(flow, leg.start, leg.end, leg.dense)
-            yield Rows(times, np.array(states).reshape(-1, len(state)), np.array(works), 1)
+            yield Rows(times, table(states, len(state)), np.array(works), 1)
             t, state, done = leg.end, leg.state, until
         if t >= outputs[-1]:
             return
@@ -94,7 +95,7 @@ def pieces(scene: Scene, outputs: Array, state: Array, limits: Tolerances) -> It
 
 
 def _only(rows: Rows, size: int) -> Rows:
-    return replace(rows, states=np.zeros((0, size)))
+    return replace(rows, states=table([], size))
 
 
 def _entered(scene: Scene, impacts: _Impacts, t: float, state: Array) -> tuple[Mode, Array, Rows]:
@@ -175,7 +176,7 @@ def _earliest(
             continue
 
         def value(t: float, i: int = i) -> float:
-            return float(scene.watched(mode, t, exact(t))[i])
+            return scene.watched(mode, t, exact(t)).item(i)
 
         low = float(times[below - 1])
         if is_first and below == 1:

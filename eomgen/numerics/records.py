@@ -54,7 +54,7 @@ class Event:
 
 @dataclass(frozen=True)
 class Rows:
-    """Times (N,), states (N, n) and the work (N,) [J] done since the start by what has no potential.
+    """Times (N,), states (N, n), the work (N,) [J] done by what has no potential, impacts included.
 
     tally: bit -> (steps that answered it, the first of them); stopped: the bits of a step that
     could not be made, 0 if all were; steps: how many were.

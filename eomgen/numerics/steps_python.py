@@ -73,7 +73,8 @@ def admissible(steps: Steps, call: Call, t: float, state: Array) -> tuple[Array,
 
 def _explicit(method: Method, call: Call, t: float, h: float, y: Array) -> tuple[Array, int]:
     assert isinstance(method.table, Tableau)
-    f, slopes = call("state_derivative"), []
+    f = call("state_derivative")
+    slopes: list[Array] = []
     for row, node in zip(method.table.a, method.table.c, strict=True):
         trial = y + h * sum((float(a) * k for a, k in zip(row, slopes, strict=False)), 0 * y)
         slopes.append(f(t + float(node) * h, trial))

@@ -86,14 +86,14 @@ def axis(values: Sequence[float], start: float, stop: float, *, tight: bool) -> 
 
 def lines(title: str, panels: Sequence[Panel]) -> str:
     """The chart as one SVG file."""
-    height = HEAD + PANEL * len(panels) + BOTTOM
+    height, words = HEAD + PANEL * len(panels) + BOTTOM, escape(title)
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{height}" '
         f'viewBox="0 0 {WIDTH} {height}" font-family="Helvetica, Arial, sans-serif" '
         'font-size="13">',
-        f"<title>{escape(title)}</title>",
+        f"<title>{words}</title>",
         f'<rect width="{WIDTH}" height="{height}" fill="white"/>',
-        f'<text x="{WIDTH / 2:g}" y="24" text-anchor="middle" font-size="16">{escape(title)}</text>',
+        f'<text x="{WIDTH / 2:g}" y="24" text-anchor="middle" font-size="16">{words}</text>',
     ]
     for number, panel in enumerate(panels):
         parts += _panel(panel, HEAD + PANEL * number, is_last=number == len(panels) - 1)
