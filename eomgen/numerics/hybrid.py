@@ -176,7 +176,7 @@ def _earliest(
             continue
 
         def value(t: float, i: int = i) -> float:
-            return scene.watched(mode, t, exact(t)).item(i)
+            return float(scene.watched(mode, t, exact(t))[i])
 
         low = float(times[below - 1])
         if is_first and below == 1:
@@ -193,7 +193,7 @@ def _positive(value: Callable[[float], float], span: tuple[float, float], nearly
     if value(start) > nearly:
         return start
     for k in range(1, HALVINGS):
-        t = start + (end - start) / 2**k
+        t = start + (end - start) * 0.5**k
         if value(t) > 0:
             return t
     return start
