@@ -56,7 +56,7 @@ def engine_python(name, formulation="auto"):
     return EnginePython(steps, given(steps))
 
 
-def run(engine, method, span, count, flow=None, every=None):
+def run(engine, method, span, count, flow=None, *, every=None):  # noqa: PLR0913
     grid = Grid(0.0, span / count, count, every or count)
     return integrate.run(engine, METHODS[method], start(engine.steps), grid, flow)
 

@@ -88,7 +88,7 @@ def test_rosenbrock_has_order_2_for_any_jacobian_and_decays_at_infinity():
     assert sp.expand(series - (1 + size * z + size**2 * z**2 / 2)) == 0
     exact = y.subs({jacobian: z, gamma: 1 - 1 / sp.sqrt(2)})
     assert sp.limit(exact, z, -sp.oo) == 0
-    assert pytest.approx(1 - 2**-0.5, abs=1e-16) == ROS2.gamma
+    assert pytest.approx(1 - 2**-0.5, abs=1e-15) == ROS2.gamma
     # A-stable: on the imaginary axis |R| <= 1
     values = [complex(exact.subs(z, sp.I * x).evalf()) for x in (0.1, 1, 10, 1000)]
     assert all(abs(v) <= 1 for v in values)

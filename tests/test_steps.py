@@ -47,16 +47,20 @@ def test_c_is_the_method_as_numpy_has_it(name, method):
 def test_halving_the_step_shows_the_order(name, method):
     wanted = exact(name, 0.5)
     size = np.abs(wanted).max()
-    counts = [320, 640] if METHODS[method].order < 4 else [100, 200]
     errors = [
         np.abs(run(engine_c(name), method, 0.5, n).states[-1] - wanted).max() / size
-        for n in counts
+        for n in (40, 80, 160, 320, 640)
     ]
-    if errors[1] < 1e-11:  # so slow a motion that rounding is all that is left
-        assert name == "satellite"
+    # finer than this it is the rounding that is seen, and the reference
+    resolved = [e for e in errors if e > 5e-11]
+    if len(resolved) < 2:
+        assert (name, METHODS[method].order > 3) == ("satellite", True)
+        assert errors[-1] < 1e-13
         return
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(METHODS[method].order, abs=0.45)
-    assert errors[1] < 2e-2
+    slope = -np.polyfit(range(len(resolved)), np.log2(resolved), 1)[0]
+    # projections cancel part of the error of a linked scene: the slope may be above the order
+    assert METHODS[method].order - 0.4 < slope < METHODS[method].order + 0.8
+    assert errors[-1] < 1e-2
 
 
 @pytest.mark.parametrize("name", SCENES)
