@@ -12,10 +12,11 @@ from eomgen.errors import CheckError
 from eomgen.numerics.records import Array, Engine, Event, Function, Stopped
 
 GAP, FORCE, RESERVE, SPEED = "gap", "normal force", "friction reserve", "slip speed"
-FLIGHT, STICK = "flight", "stick"
+FLIGHT, STICK, SLIDE = "flight", "stick", "slip"
 NEARLY = {GAP: 1e-8, SPEED: 1e-7, FORCE: 1e-6, RESERVE: 1e-6}  # of its scale: taken for zero
 NOISE = {GAP: 1e-15, SPEED: 1e-14, FORCE: 1e-10, RESERVE: 1e-10}  # of its scale: rounding
 MOST_IMPACTS = 100  # at one instant
+BEGINNING = 10.0  # times what is nearly zero: the slip speed with which a slip in space begins
 PROBE = 1e-6  # of the time of the run: how far ahead a mode is tried
 
 
@@ -60,8 +61,16 @@ class Scene:
         return lambda t, y: np.concatenate([y[len(y) // 2 :], self.call(name, t, y)])
 
     def watched(self, mode: Mode, t: float, state: Array) -> Array:
-        """What ends the mode where it falls to zero."""
-        return self.call(f"events_{mode.name}", t, state)
+        """What ends the mode where it falls to zero.
+
+        A slip in space has a size and no sign: it ends where it is nearly zero.
+        """
+        values = self.call(f"events_{mode.name}", t, state)
+        least = NEARLY[SPEED] * scales(state)[1]
+        for i, (quantity, contact) in enumerate(mode.events):
+            if quantity == SPEED and mode.states[contact] == SLIDE:
+                values[i] -= least
+        return values
 
     def flow(self, mode: Mode) -> Function:
         """Energy and power in a mode."""
@@ -107,11 +116,19 @@ def hit(scene: Scene, t: float, state: Array) -> tuple[Array, tuple[Event, ...]]
                 "does not say what an impact does: give it `restitution`"
             )
         state = np.concatenate([state[:n], scene.call(scene.impacts[contact], t, state)])
+        # the event was found a little below zero, from where no flight begins
+        state = np.concatenate([resting(scene, contact, t, state)[:n], state[n:]])
         found.append(Event(t, contact, f"impact at {-rates[i]:.6g}"))
     names = ", ".join(dict.fromkeys(event.contact for event in found))
     raise CheckError(
         f"impacts do not end at t = {t:.9g} s: {names} strike in turn; lower the restitution"
     )
+
+
+def resting(scene: Scene, contact: str, t: float, state: Array) -> Array:
+    """The state with one contact closed and at rest, the others as they are."""
+    alone = next(m for m in scene.modes if m.closed == (contact,))
+    return scene.projected(alone, t, state)
 
 
 def choose(scene: Scene, t: float, state: Array) -> tuple[Mode, Array]:
@@ -199,13 +216,23 @@ def _force_scale(scene: Scene, modes: list[Mode], t: float, state: Array) -> flo
 def _started(scene: Scene, mode: Mode, t: float, state: Array) -> Array:
     """The state on the contacts of the mode; a slip in space that begins gets its direction."""
     start = scene.projected(mode, t, state)
-    values = scene.watched(mode, t, start)
-    if np.all(np.isfinite(values)):
+    n, least = len(state) // 2, NEARLY[SPEED] * scales(state)[1]
+    if all(slip > least for slip in _sliding(scene, mode, t, start)):
         return start
     # friction has no direction at rest: begin along what would move it without friction
-    n = len(state) // 2
     push = np.concatenate([0 * state[:n], scene.call("accelerations", t, start)])
-    return scene.projected(mode, t, start + 0.1 * _ahead(scene) * push)
+    moved = scene.projected(mode, t, start + least * push)
+    slips = _sliding(scene, mode, t, moved)
+    if not min(slips, default=0.0) > 0:
+        return moved
+    return scene.projected(mode, t, start + BEGINNING * least**2 / min(slips) * push)
+
+
+def _sliding(scene: Scene, mode: Mode, t: float, state: Array) -> list[float]:
+    """The slip speeds of the contacts that slide in space."""
+    values = scene.call(f"events_{mode.name}", t, state)
+    pairs = zip(values, mode.events, strict=True)
+    return [v for v, (quantity, c) in pairs if quantity == SPEED and mode.states[c] == SLIDE]
 
 
 def _ahead(scene: Scene) -> float:

@@ -13,6 +13,7 @@ from importlib import import_module
 
 import numpy as np
 
+from eomgen.errors import CheckError
 from eomgen.numerics import contact_modes
 from eomgen.numerics.adaptive import (
     Dense,
@@ -22,12 +23,15 @@ from eomgen.numerics.adaptive import (
     table,
     work_of,
 )
-from eomgen.numerics.contact_modes import NEARLY, Mode, Scene
+from eomgen.numerics.contact_modes import FORCE, GAP, RESERVE, SPEED, Mode, Scene
 from eomgen.numerics.records import Array, Event, Rows
 
 METHOD = "dop853"
 SAMPLES = 12  # of a step, where the sign of an event is looked at
-HALVINGS = 60
+ROUNDING = {GAP: 2e-15, SPEED: 1e-13, FORCE: 1e-13, RESERVE: 1e-13}  # of a value's scale
+STANDING = 1e-13  # of the time: it did not pass
+FORCES = (FORCE, RESERVE)
+MOST_CHANGES = 50  # of the mode while the time stands still
 ACCUMULATED = 1e-6  # seconds: impacts that end so soon are taken to have ended
 
 
@@ -74,7 +78,9 @@ def pieces(scene: Scene, outputs: Array, state: Array, limits: Tolerances) -> It
     mode, state, rows = _entered(scene, impacts, t, state)
     yield _only(rows, len(state))
     total -= rows.lost
+    stood, before = 0, mode
     while t < outputs[-1]:
+        since = t
         for leg in _legs(scene, mode, (t, float(outputs[-1])), state, limits):
             until = int(np.searchsorted(outputs, leg.end, side="right"))
             flow = scene.flow(mode)
@@ -86,12 +92,28 @@ def pieces(scene: Scene, outputs: Array, state: Array, limits: Tolerances) -> It
             t, state, done = leg.end, leg.state, until
         if t >= outputs[-1]:
             return
+        stood = _stood(stood, t - since, (t, before.name, mode.name))
         before = mode
         mode, state, rows = _entered(scene, impacts, t, state)
         if mode.name != before.name:
             rows = replace(rows, events=(*rows.events, Event(t, leg.ended, f"mode {mode.name}")))
         total -= rows.lost
         yield _only(rows, len(state))
+
+
+def _stood(before: int, passed: float, at: tuple[float, str, str]) -> int:
+    """How often the mode has changed while the time stood still.
+
+    Raises:
+        CheckError: it changes without end.
+    """
+    t, first, second = at
+    if before >= MOST_CHANGES:
+        raise CheckError(
+            f"the modes of the contacts change without end at t = {t:.9g} s, between {first} and "
+            f"{second}"
+        )
+    return before + 1 if passed <= STANDING * max(1.0, abs(t)) else 0
 
 
 def _only(rows: Rows, size: int) -> Rows:
@@ -106,7 +128,7 @@ def _entered(scene: Scene, impacts: _Impacts, t: float, state: Array) -> tuple[M
         if end - t < ACCUMULATED:
             what = f"impacts accumulate at t = {end:.9g} s: the contact is closed from here"
             events = (*events, Event(t, event.contact, what))
-            after = _closed(scene, event.contact, t, after)
+            after = contact_modes.resting(scene, event.contact, t, after)
             impacts.times[event.contact].clear()
     mode, after = contact_modes.choose(scene, t, after)
     flow = scene.flow(mode)
@@ -115,29 +137,32 @@ def _entered(scene: Scene, impacts: _Impacts, t: float, state: Array) -> tuple[M
     return mode, after, Rows(none, none, none, 0, 0, {}, events, lost)
 
 
-def _closed(scene: Scene, contact: str, t: float, state: Array) -> Array:
-    """The state with a contact at rest."""
-    alone = next(m for m in scene.modes if m.closed == (contact,))
-    return scene.projected(alone, t, state)
-
-
 def _legs(
     scene: Scene, mode: Mode, span: tuple[float, float], state: Array, limits: Tolerances
 ) -> Iterator[_Leg]:
     """Steps of a mode until something ends it, or to the end."""
     given = Problem(scene.slope(mode), project=lambda t, y: (scene.projected(mode, t, y), 0))
+    least = _least(scene, mode, span[0], state)
     stepper = Stepper(METHOD, given, span, state, limits)
-    is_first = True
     while not stepper.is_finished:
         start, end, dense, _ = stepper.advance()
         exact = _exact(scene, mode, (start, state), limits)
-        found = _earliest(scene, mode, (start, end, dense), exact, is_first)
+        found = _earliest(scene, mode, (start, end, dense), exact, least)
         if found is not None:
             t, contact = found
             yield _Leg(start, t, dense, scene.projected(mode, t, exact(t)), contact)
             return
-        state, is_first = np.array(stepper.solver.y), False
+        state = np.array(stepper.solver.y)
         yield _Leg(start, end, dense, state, "")
+
+
+def _least(scene: Scene, mode: Mode, t: float, state: Array) -> Array:
+    """What each watched value must fall below: zero, less what may be rounding."""
+    values = np.abs(scene.watched(mode, t, state))
+    place, speed = contact_modes.scales(state)
+    forces = [v for v, (q, _) in zip(values, mode.events, strict=True) if q in FORCES]
+    scale = dict.fromkeys(FORCES, max(forces, default=0.0)) | {GAP: place, SPEED: speed}
+    return np.array([-ROUNDING[quantity] * scale[quantity] for quantity, _ in mode.events])
 
 
 def _exact(
@@ -162,41 +187,25 @@ def _earliest(
     mode: Mode,
     step: tuple[float, float, Dense],
     exact: Callable[[float], Array],
-    is_first: bool,
+    least: Array,
 ) -> tuple[float, str] | None:
     """The first event of a step: its time and contact."""
     start, end, dense = step
     times = np.linspace(start, end, SAMPLES + 1)
-    values = [scene.watched(mode, t, dense(t)) for t in times]
+    values = np.array([scene.watched(mode, t, dense(t)) for t in times]) - least
     best: tuple[float, str] | None = None
-    for i, (quantity, contact) in enumerate(mode.events):
-        series = [float(v[i]) for v in values]
-        below = next((k for k, v in enumerate(series) if k and v < 0), None)
-        if below is None:
+    for i, (_, contact) in enumerate(mode.events):
+        below = np.flatnonzero(values[1:, i] < 0)
+        if not below.size:
             continue
 
         def value(t: float, i: int = i) -> float:
-            return float(scene.watched(mode, t, exact(t))[i])
+            return float(scene.watched(mode, t, exact(t))[i] - least[i])
 
-        low = float(times[below - 1])
-        if is_first and below == 1:
-            low = _positive(value, (start, float(times[1])), NEARLY[quantity])
-        root = _root(value, low, float(times[below]))
+        root = _root(value, float(times[below[0]]), float(times[below[0] + 1]))
         if best is None or root < best[0]:
             best = (root, contact)
     return best
-
-
-def _positive(value: Callable[[float], float], span: tuple[float, float], nearly: float) -> float:
-    """A time after the start at which a value that starts near zero is positive, or the start."""
-    start, end = span
-    if value(start) > nearly:
-        return start
-    for k in range(1, HALVINGS):
-        t = start + (end - start) * 0.5**k
-        if value(t) > 0:
-            return t
-    return start
 
 
 def _root(value: Callable[[float], float], low: float, high: float) -> float:
