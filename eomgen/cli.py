@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 import click
 
 from eomgen import __version__, files
+from eomgen.cli_chart import chart
 from eomgen.cli_common import (
     compensated_option,
     complain,
@@ -284,6 +285,7 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
 
 
 commands.add_command(simulate)
+commands.add_command(chart)
 
 
 def main() -> NoReturn:

@@ -139,10 +139,10 @@ def job(study: Study, request: Request) -> Job:
     wish = checked(Wish(request.method, request.step, request.rtol, request.atol), study)
     start = start_of(study, request.state, _inputs(request.inputs))
     extra = (compile_places.function(machine_of(study)),) if request.animate else ()
-    made = setup(study, wanted(wish, study), start, extra)
+    made = setup(study, (wanted(wish, study),), start, extra)
     choice = choose(wish, made, request.t_end)
     if choice.is_fixed and choice.method not in {m.name for m in made.steps.methods}:
-        made = setup(study, choice.method, start, extra)
+        made = setup(study, (choice.method,), start, extra)
     _known(made, request.show)
     outputs = simulate.outputs_of(
         (start.time, start.time + request.t_end), choice, request.output_step
