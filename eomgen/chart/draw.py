@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Callable, Sequence
 from importlib import import_module
-from math import isfinite
+from math import inf, isfinite
 from typing import Any
 
 from eomgen.chart.front import front, recommended
@@ -19,6 +19,7 @@ MARKERS = {
     "midpoint": "P",
 }  # fmt: skip
 LINES = {"f64": "-", "f32": (0, (4, 2))}
+LEGEND = 7  # entries of a line
 LEAST = 1e-17  # errors below it are drawn there: a logarithm has no zero
 Value = Callable[[Errors], float]
 PANELS: tuple[tuple[str, Value], ...] = (
@@ -73,8 +74,9 @@ def _figure(pyplot: Any, chart: Chart) -> Any:
         axis.tick_params(labelbottom=True)
     figure.suptitle(f"{chart.title}: {chart.horizon:g} s", fontsize=12)
     handles = _legend(pyplot, chart)
-    figure.legend(handles=handles, loc="lower center", ncols=5, frameon=False, fontsize=8)
-    figure.tight_layout(rect=(0, 0.03 + 0.04 * ((len(handles) + 4) // 5) * 2 / rows, 1, 1))
+    figure.legend(handles=handles, loc="lower center", ncols=LEGEND, frameon=False, fontsize=8)
+    lines = (len(handles) + LEGEND - 1) // LEGEND
+    figure.tight_layout(rect=(0, 0.3 * (lines + 0.4) / figure.get_size_inches()[1], 1, 1))
     return figure
 
 
@@ -110,7 +112,7 @@ def _panel(axis: Any, chart: Chart, value: Value, *, is_judged: bool) -> None:
 
 
 def _drawn_series(axis: Any, points: Sequence[Point], value: Value) -> None:
-    good = [p for p in points if p.status == OK and isfinite(value(p.errors))]
+    good = [p for p in points if p.status == OK and 0 < value(p.errors) < inf]
     if not good:
         return
     run = good[0].run

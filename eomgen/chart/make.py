@@ -36,7 +36,7 @@ def chart(study: Study, sweep: Sweep, state: str, inputs: dict[str, str]) -> Cha
     horizon, said = reference.trusted_horizon(found[0], sweep.horizon, sweep.target)
     motion, known = reference.of(found, horizon)
     pairs = _run(
-        _plans(found, sweep, horizon), motion, known.error, began + FOR_RUNS * sweep.seconds
+        _plans(found, sweep, motion), motion, known.error, began + FOR_RUNS * sweep.seconds
     )
     points, is_whole = timing.timed(pairs, FOR_TIMES * sweep.seconds, sweep.seed)
     remarks = [said] if said else []
@@ -61,10 +61,10 @@ def chart(study: Study, sweep: Sweep, state: str, inputs: dict[str, str]) -> Cha
     )
 
 
-def _plans(found: tuple[Variant, ...], sweep: Sweep, horizon: float) -> list[Plan]:
+def _plans(found: tuple[Variant, ...], sweep: Sweep, motion: Motion) -> list[Plan]:
     """All runs, the cheapest first, so that what must be left out is what costs most."""
     made = [
-        plan for v in found for p in sweep.precisions for plan in runs.plans(v, p, sweep, horizon)
+        plan for v in found for p in sweep.precisions for plan in runs.plans(v, p, sweep, motion)
     ]
     return sorted(made, key=runs.foreseen)
 

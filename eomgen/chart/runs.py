@@ -67,7 +67,7 @@ def _steps(method: Method, sweep: Sweep, motion: Motion) -> list[float]:
     horizon = float(motion.times[-1] - motion.times[0])
     if sweep.steps is not None:
         high, low, count = sweep.steps
-        wanted = np.geomspace(high, low, count)
+        wanted: Array = np.geomspace(high, low, count)
     else:
         wanted = LARGEST / _fastest(method, motion.modes, horizon) * 0.5 ** np.arange(STEPS)
     fitted = [_grid(0.0, horizon, h)[0].step for h in wanted]
