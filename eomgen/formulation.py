@@ -97,6 +97,9 @@ def choose(scene: Linked, wanted: Wanted = AUTO) -> Formulation:
         return _stabilised(scene, wanted.baumgarte)
     if wanted.formulation != "auto":
         return MAKERS[wanted.formulation](scene)
+    if scene.model.simulation.formulation is not None:
+        made = MAKERS[scene.model.simulation.formulation](scene)
+        return replace(made, why="`simulate` of the spec asks for it")
     if scene.touches:
         return replace(MAKERS["multiplier"](scene), why="contact and flight, over all coordinates")
     if scene.asks_reactions:

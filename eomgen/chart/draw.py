@@ -128,7 +128,7 @@ def _drawn_series(axis: Any, points: Sequence[Point], value: Value) -> None:
 
 def _judgement(axis: Any, chart: Chart, value: Value) -> None:
     """The front, the target, what the reference resolves, what is recommended."""
-    best = front(chart.points)
+    best = _descending(front(chart.points))
     axis.plot(
         [p.cost for p in best], [max(value(p.errors), LEAST) for p in best],
         color="black", linewidth=1.6, zorder=1,
@@ -143,6 +143,15 @@ def _judgement(axis: Any, chart: Chart, value: Value) -> None:
             choice.cost, max(value(choice.errors), LEAST), "o", markersize=13,
             markerfacecolor="none", color="black", markeredgewidth=1.2,
         )  # fmt: skip
+
+
+def _descending(points: Sequence[Point]) -> list[Point]:
+    """The points of a line that only falls: of those that count as equal, the more accurate."""
+    kept: list[Point] = []
+    for point in points:
+        if not kept or point.errors.judged < kept[-1].errors.judged:
+            kept.append(point)
+    return kept
 
 
 def _failures(axis: Any, chart: Chart) -> None:

@@ -38,7 +38,8 @@ def chart(study: Study, sweep: Sweep, state: str, inputs: dict[str, str]) -> Cha
     pairs = _run(
         _plans(found, sweep, motion), motion, known.error, began + FOR_RUNS * sweep.seconds
     )
-    points, is_whole = timing.timed(pairs, FOR_TIMES * sweep.seconds, sweep.seed)
+    left = began + (FOR_RUNS + FOR_TIMES) * sweep.seconds - time.monotonic()
+    points, is_whole = timing.timed(pairs, left, sweep.seed)
     remarks = [said] if said else []
     if not is_whole:
         # one cost for all: times of some would hide the others

@@ -25,6 +25,7 @@ TIGHT_STIFF = Tolerances(1e-11, 1e-14)
 FINER = 64.0  # steps of the second way for each radian of the fastest mode
 MOST_STEPS = 4_000_000
 NUDGE = 1e-8  # of the first coordinate, to see whether neighbours part
+SATURATED = 0.1  # of the largest distance
 PARTED = 1e3  # how far neighbours part where it is chaos
 DUST = 1e-15
 SAMPLED = 12
@@ -151,8 +152,8 @@ def trusted_horizon(variant: Variant, horizon: float, target: float) -> tuple[fl
     growth = float(np.max(apart)) / NUDGE
     if growth < PARTED:
         return horizon, ""
-    place = int(np.argmax(apart))
-    rate = log(growth) / (times[place] - times[0])
+    place = int(np.argmax(apart >= SATURATED * np.max(apart)))  # then they only wander
+    rate = log(float(apart[place]) / NUDGE) / (times[place] - times[0])
     trusted = log(target / DUST) / rate
     said = f"I-CHAOS: lambda = {rate:.2g}/s; comparisons valid to {trusted:.3g} s"
     return min(horizon, trusted), said

@@ -202,6 +202,21 @@ GUESS = "beside constraints: about where coordinates and rates are that the cons
 INITIAL = {"guess": Key(GUESS, Table(QUANTITY))}
 EQUILIBRIUM = Either((Table(QUANTITY), Items(Table(QUANTITY))))
 
+METHODS = (
+    "semi-euler", "verlet", "rk4", "dopri5", "rosenbrock2", "midpoint",
+    "dop853", "lsoda", "radau", "cvode",
+)  # fmt: skip
+FORMULATIONS = ("minimal", "nullspace", "multiplier")
+SIMULATION = Record(
+    {
+        "method": Key("the integrator", Leaf("choice", METHODS)),
+        "step": Key("of a method with fixed steps", QUANTITY),
+        "formulation": Key(
+            "of the equations; a free scene has `minimal`", Leaf("choice", FORMULATIONS)
+        ),
+    }
+)
+
 LANGUAGE = Record(
     {
         "eom": Key("version of the language", Leaf("choice", ("1",)), required=True),
@@ -264,6 +279,7 @@ LANGUAGE = Record(
             "the region in which the scene moves", Table(Items(QUANTITY, least=2, most=2))
         ),
         "outputs": Key("named formulas", Table(_described("formula", "the formula"))),
+        "simulate": Key("how `eomgen simulate` runs it, unless told otherwise", SIMULATION),
         "expect": Key(
             "the author's claims, checked",
             Record(
