@@ -24,6 +24,7 @@ ALLOWED: dict[str, set[str]] = {
     "compile_contacts": RECORDS | {"algebra", "mechanics", "compile"},
     "analysis": RECORDS | {"algebra", "mechanics", "compile"},
     "checks": RECORDS | {"algebra", "mechanics", "compile", "analysis", "formulation"},
+    "functions": RECORDS | {"algebra", "analysis", "checks", "compile", "mechanics"},
     "wanted": {"errors"},
     "formulation": RECORDS | {"wanted", "algebra", "analysis", "compile", "mechanics"},
     "reactions": RECORDS | {"algebra", "formulation", "mechanics"},
