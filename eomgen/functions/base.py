@@ -47,6 +47,8 @@ class Base:
     base: tuple[BaseParameter, ...]
     without_effect: tuple[int, ...]  # their columns are zero
     states: int  # random ones, at which the rank was found in 50 digits
+    error: float  # of Y theta + rest = M u' + h - Q there, relative to the largest term
+    values: tuple[Any, ...] | None  # by the spec, in 50 digits; None where it leaves some open
 
     def name(self, parameter: BaseParameter) -> str:
         """The combination in words, as `mc_x(upper) + l_1 m(fore)`."""
@@ -70,12 +72,20 @@ def of(motion: Motion) -> Base:
     found = motion.inertial
     count = 2 * len(found) // max(motion.size, 1) + SPARE
     regression = _Regression(motion, tuple(_states(motion, count)))
-    relations = recognise.recognised(regression.trial())
+    trial = regression.trial()
+    relations = recognise.recognised(trial)
     kept = [i for i in range(len(found)) if i not in relations]
     base = tuple(
         BaseParameter(i, tuple((j, c[i]) for j, c in relations.items() if i in c)) for i in kept
     )
-    return Base(found, base, tuple(j for j, c in relations.items() if not c), count)
+    return Base(
+        parameters=found,
+        base=base,
+        without_effect=tuple(j for j, c in relations.items() if not c),
+        states=count,
+        error=regression.error(trial.values),
+        values=tuple(regression.total(p, trial.values) for p in base) if trial.known else None,
+    )
 
 
 @dataclass(frozen=True)
@@ -87,14 +97,33 @@ class _Regression:
 
     def trial(self) -> recognise.Trial:
         """The relations at the spec's parameters, and at others where states are free of them."""
-        values = linkage.free_parameters(linkage.of(self.motion.machine))[0]
+        values, unknown = linkage.free_parameters(linkage.of(self.motion.machine))
         read = set(below(entry for p in self.motion.inertial for entry in p.column))
         names = {
             i: p.symbol
             for i, p in enumerate(machines.free_parameters(self.motion.machine.model))
             if self.motion.parameters[i] in read and not self.motion.machine.rows
         }
-        return recognise.Trial(names, values, self.relations)
+        return recognise.Trial(names, values, not unknown, self.relations)
+
+    def error(self, parameters: Sequence[Any]) -> float:
+        """The worst difference of Y theta + rest from M u' + h - Q, over the largest term."""
+        given = dict(zip(self.motion.parameters, parameters, strict=True))
+        inputs = dict.fromkeys(self.motion.inputs, PRECISE.number(1))
+        terms = [_terms(self.motion, i) for i in range(self.motion.size)]
+        worst = 0.0
+        for state in self.states:
+            for row in terms:
+                values = evaluate(row, {**given, **inputs, **state}, PRECISE)
+                size = max(map(abs, values))
+                worst = max(worst, float(abs(sum(values)) / size) if size else 0.0)
+        return worst
+
+    def total(self, parameter: BaseParameter, parameters: Sequence[Any]) -> Any:
+        """The value of a base parameter."""
+        given = dict(zip(self.motion.parameters, parameters, strict=True))
+        values = evaluate([p.value for p in self.motion.inertial], given, PRECISE)
+        return values[parameter.kept] + sum(c.value * values[j] for j, c in parameter.terms)
 
     def relations(self, parameters: Sequence[Any]) -> recognise.Relations:
         """Each dependent column -> its multiples of those that stay."""
@@ -106,6 +135,18 @@ class _Regression:
             for row in rows:
                 row += [next(values) for _ in range(self.motion.size)]
         return elimination.combinations(rows)
+
+
+def _terms(motion: Motion, row: int) -> list[Node]:
+    """Terms that add up to zero: Y theta + rest, less M u' + h - Q as the equations have it."""
+    equations = motion.machine.equations
+    pairs = zip(equations.mass_matrix[row], motion.accelerations, strict=True)
+    return [
+        *(p.column[row] * p.value for p in motion.inertial),
+        motion.rest[row],
+        *(-(entry * a) for entry, a in pairs),
+        equations.generalized_forces[row] - equations.bias[row],
+    ]
 
 
 def _states(motion: Motion, count: int) -> Iterator[Values]:

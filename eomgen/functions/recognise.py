@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations_with_replacement
 from math import prod
@@ -36,15 +36,24 @@ class Coefficient:
     formula: sp.Expr | None
     general: bool = False
 
+    @property
+    def text(self) -> str:
+        """The formula as the language writes it, or the number."""
+        return mpmath.nstr(self.value, 17) if self.formula is None else _written(self.formula)
+
     def times(self, name: str) -> str:
         """`+ l_1 m(fore)`: the sign, the coefficient unless it is one, the name."""
-        if self.formula is None:
-            size, negative = mpmath.nstr(abs(self.value), 17), self.value < 0
-        else:
-            negative = self.formula.could_extract_minus_sign()
-            size = _written(-self.formula if negative else self.formula)
-        factor = "" if size == "1" else f"{size} "
+        formula = self.formula
+        negative = self.value < 0 if formula is None else formula.could_extract_minus_sign()
+        size = self.opposite if negative else self
+        factor = "" if size.text == "1" else f"{size.text} "
         return f"{'-' if negative else '+'} {factor}{name}"
+
+    @property
+    def opposite(self) -> Coefficient:
+        """The coefficient with the other sign."""
+        formula = None if self.formula is None else -self.formula
+        return replace(self, value=-self.value, formula=formula)
 
 
 def _written(formula: sp.Expr) -> str:
@@ -60,11 +69,12 @@ def _written(formula: sp.Expr) -> str:
 class Trial:
     """Relations that can be asked for at any parameters.
 
-    names: index -> symbol of those that may matter; values: of all, by the spec.
+    names: index -> symbol of those that may matter; values: of all, `known` by the spec.
     """
 
     names: Mapping[int, sp.Symbol]
     values: Sequence[Any]
+    known: bool  # else random numbers stand in for some
     relations: Callable[[Sequence[Any]], Relations]
 
 

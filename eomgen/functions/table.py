@@ -14,6 +14,7 @@ from eomgen.errors import UsageError
 from eomgen.functions import base, places, sensitivity
 from eomgen.functions.motion import Motion
 from eomgen.program import IN_MOTION, Function, Program
+from eomgen.render.names import identifier
 
 STANDARD = "standard"  # stands for what `generate` writes when it is asked for nothing
 Build = Callable[[Motion], Function]
@@ -162,20 +163,27 @@ def _inertial_parameters(motion: Motion) -> Function:
 def _position(motion: Motion, name: str) -> Function:
     values = places.position(motion, name)
     about = f"position of {name} [m], world axes"
-    return assemble(f"position_of_{name}", about, (len(values),), values, motion.machine.pivots)
+    return _at(motion, f"position_of_{name}", about, (len(values),), values)
 
 
 def _velocity(motion: Motion, name: str) -> Function:
     values = places.velocity(motion, name)
     about = places.about_velocity(motion, name)
-    return assemble(f"velocity_of_{name}", about, (len(values),), values, motion.machine.pivots)
+    return _at(motion, f"velocity_of_{name}", about, (len(values),), values)
 
 
 def _jacobian(motion: Motion, name: str) -> Function:
     rows = places.point_jacobian(motion, name)
     about = f"d / d u of the {places.about_velocity(motion, name)}"
-    shape, pivots = (len(rows), motion.size), motion.machine.pivots
-    return assemble(f"jacobian_of_{name}", about, shape, _flat(rows), pivots)
+    shape = (len(rows), motion.size)
+    return _at(motion, f"jacobian_of_{name}", about, shape, _flat(rows))
+
+
+def _at(
+    motion: Motion, name: str, about: str, shape: tuple[int, ...], results: Sequence[Node]
+) -> Function:
+    """A function of a place, whose name may hold Greek letters."""
+    return assemble(identifier(name), about, shape, results, motion.machine.pivots)
 
 
 ROWS: dict[str, Row] = {
