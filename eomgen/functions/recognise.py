@@ -19,9 +19,9 @@ Relations = dict[int, dict[int, Any]]  # dependent column -> its multiples of co
 Entries = dict[tuple[int, int], Any]
 CLOSE = PRECISE.number(10) ** -30  # relative; relations are good to some 40 digits
 LARGEST_DENOMINATOR = 10**12
-LARGEST_FACTOR = 10**4  # in a polynomial
+LARGEST_FACTOR = 10**4  # in a polynomial; less where many monomials could add up by chance
 NEARBY = PRECISE.number(Fraction(101, 100))
-MOST_PARAMETERS = 3  # in one coefficient
+MOST_PARAMETERS = 4  # in one coefficient
 DEGREE = 2
 
 
@@ -81,7 +81,7 @@ class Trial:
 def recognised(trial: Trial) -> dict[int, dict[int, Coefficient]]:
     """The relations at the spec's values, with formulas where some are found.
 
-    A polynomial of degree 2 in up to 3 parameters, or the reciprocal of one, is found by integer
+    A polynomial of degree 2 in up to 4 parameters, or the reciprocal of one, is found by integer
     relations (PSLQ) at random parameters and kept if it gives the number at the spec's values too.
     """
     here = trial.relations(trial.values)
@@ -157,8 +157,9 @@ def _combination(value: Any, parameters: Mapping[sp.Symbol, Any]) -> sp.Expr | N
     """Small rational multiples of monomials that add up to the value."""
     monomials = list(_monomials(parameters))
     numbers = [prod((parameters[s] for s in m), start=PRECISE.number(1)) for m in monomials]
+    largest = min(LARGEST_FACTOR, 10 ** ((DIGITS - 10) // len(monomials)))
     with mpmath.workdps(DIGITS - 5):
-        found = mpmath.pslq([value, *numbers], maxcoeff=LARGEST_FACTOR, maxsteps=10**4)
+        found = mpmath.pslq([value, *numbers], maxcoeff=largest, maxsteps=10**4)
     if not found or not found[0]:
         return None
     pairs = zip(found[1:], monomials, strict=True)
