@@ -39,7 +39,7 @@ class Coefficient:
     @property
     def text(self) -> str:
         """The formula as the language writes it, or the number."""
-        return mpmath.nstr(self.value, 17) if self.formula is None else _written(self.formula)
+        return repr(float(self.value)) if self.formula is None else _written(self.formula)
 
     def times(self, name: str) -> str:
         """`+ l_1 m(fore)`: the sign, the coefficient unless it is one, the name."""
