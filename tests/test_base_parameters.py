@@ -106,7 +106,7 @@ def test_the_base_gives_the_whole_regressor(case):
     """Y theta = Y_b theta_b, and the columns of Y_b are independent, at states of their own."""
     found = found_in(case)
     rows, base_rows = [], []
-    for given in states(case):
+    for given in ({**s, "parameters": states(case)[0]["parameters"]} for s in states(case)):
         theta = value(case, "inertial_parameters", given)
         whole = value(case, "regressor", given)
         chosen = value(case, "base_regressor", given)
