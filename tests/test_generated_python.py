@@ -81,7 +81,12 @@ def moved(module, case):
     start = getattr(module, "INITIAL_STATE", arguments(case)["state"][0])
     inputs = np.zeros(len(module.INPUTS))
     found = solve_ivp(
-        module.state_derivative, (0.0, FAST.get(stem(case), SHORT)), start, args=(inputs,), rtol=1e-10, atol=1e-12
+        module.state_derivative,
+        (0.0, FAST.get(stem(case), SHORT)),
+        start,
+        args=(inputs,),
+        rtol=1e-10,
+        atol=1e-12,
     )
     assert found.success
     return found, module.energy(found.t, found.y, inputs)
