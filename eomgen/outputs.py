@@ -156,14 +156,17 @@ def _json_summary(spec: str, study: Study) -> str:
             "power_balance": report.power,
             "terms": report.terms,
             "claims": report.claims,
-            "warnings": [*report.warnings, *_linked_warnings(study)],
+            **_warnings(study),
             **_linked_json(study),
         }
     )
 
 
-def _linked_warnings(study: Study) -> tuple[str, ...]:
-    return () if study.links is None else study.links.scene.report.freedom.warnings
+def _warnings(study: Study) -> dict[str, list[str]]:
+    """What is true and yet may surprise; a free scene without any says nothing."""
+    linked = () if study.links is None else study.links.scene.report.freedom.warnings
+    found = [*study.report.warnings, *linked]
+    return {"warnings": found} if found or study.links is not None else {}
 
 
 def _linked_json(study: Study) -> dict[str, Any]:
