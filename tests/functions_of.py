@@ -46,13 +46,21 @@ def function(case, name):
 
 @cache
 def states(case):
-    """Arguments by name, at every state of `reference`, with accelerations."""
+    """Arguments by name, at every state of `reference`, with accelerations.
+
+    Quaternions have length 1 in all digits.
+    """
     drawn = samples.draw(compiled(case).model, STATES, seed=5).accelerations
     given = {**arguments(case), "accelerations": np.array(drawn).T.reshape(STATES, -1)}
-    return [
+    found = [
         {name: [PRECISE.number(float(v)) for v in rows[i]] for name, rows in given.items()}
         for i in range(STATES)
     ]
+    if compiled(case).model.quaternions:
+        for state in found:
+            normal = list(value(case, "project_positions", state))
+            state["state"][: len(normal)] = normal
+    return found
 
 
 def value(case, name, given):

@@ -24,7 +24,7 @@ from eomgen.functions import recognise
 from eomgen.functions.motion import Motion
 from eomgen.functions.recognise import Coefficient
 from eomgen.mechanics import machine as machines
-from eomgen.mechanics import speeds
+from eomgen.mechanics import motions, speeds
 from eomgen.mechanics.regressor import Inertial
 
 SPARE = 3  # states more than the columns need
@@ -97,7 +97,8 @@ class _Regression:
 
     def trial(self) -> recognise.Trial:
         """The relations at the spec's parameters, and at others where states are free of them."""
-        values, unknown = linkage.free_parameters(linkage.of(self.motion.machine))
+        scene = linkage.Linkage(self.motion.machine.kinematics, ())
+        values, unknown = linkage.free_parameters(scene)
         read = set(below(entry for p in self.motion.inertial for entry in p.column))
         names = {
             i: p.symbol
@@ -164,9 +165,13 @@ def _states(motion: Motion, count: int) -> Iterator[Values]:
 
 def _free(motion: Motion, count: int) -> Iterator[tuple[Any, list[Any]]]:
     drawn = samples.draw(motion.machine.model, count)
+    kinematics = motion.machine.kinematics
+    # quaternions are of length 1 in doubles only
+    places = motions.normalised(kinematics.model, kinematics.algebra)
     for i in range(count):
         state = [PRECISE.number(column[i]) for column in drawn.state]
-        yield PRECISE.number(drawn.time[i]), state
+        normal = evaluate(places, dict(zip(motion.state, state, strict=True)), PRECISE)
+        yield PRECISE.number(drawn.time[i]), [*normal, *state[len(normal) :]]
 
 
 def _admissible(motion: Motion, count: int) -> Iterator[tuple[Any, list[Any]]]:
