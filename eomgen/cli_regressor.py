@@ -29,8 +29,8 @@ def regressor(spec: str, formulation: str, format_: str) -> None:
     from eomgen.functions.motion import Motion
     from eomgen.study import machine_of
 
-    text = files.read(spec)
     with reporting(format_, files.shown(spec)):
+        text = files.read(spec)
         found = base.of(Motion(machine_of(text, files.shown(spec), Wanted(formulation))))
     if format_ == "json":
         click.echo(json.dumps(sheet.as_json(found), indent=2, ensure_ascii=False))
