@@ -29,7 +29,9 @@ def names(case):
     model = compiled(case).model
     missing = set() if model.inputs else {"input_jacobian"}
     missing |= set() if model.parameters else {"parameter_jacobian"}
-    missing |= {"base_regressor"} if compiled(case).kept or case in LONG else set()
+    missing |= {"base_regressor"} if compiled(case).kept else set()
+    if case in LONG:
+        return ["inverse_dynamics", "state_jacobian"]
     everywhere = [f"{kind}:{name}" for kind in table.ROWS_AT for name in places.names(model)]
     return [*(n for n in table.ROWS if n not in missing), *everywhere]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import ceil, log10
 from typing import Any
 
 import mpmath
@@ -11,6 +12,7 @@ from eomgen.mechanics.regressor import Inertial
 
 UNITS = {0: "kg", 1: "kg m", 2: "kg m^2"}  # by the power of length
 SHOWN = 6  # digits in the text
+LEAST_ERROR = 1e-50
 
 
 def text(base: Base) -> str:
@@ -26,7 +28,8 @@ def text(base: Base) -> str:
     names = [base.parameters[i].name for i in base.without_effect]
     lines.append(f"Without effect: {', '.join(names) or 'none'}")
     lines += _at_these_values(base)
-    lines.append(f"checked: Y theta + rest = M u' + h - Q there, relative error {base.error:.0e}")
+    power = ceil(log10(max(base.error, LEAST_ERROR)))
+    lines.append(f"checked: Y theta + rest = M u' + h - Q there, relative error below 1e{power}")
     return "\n".join(lines)
 
 
