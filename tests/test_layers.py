@@ -56,8 +56,11 @@ ALLOWED: dict[str, set[str]] = {
     "output_links": {"analysis", "formulation", "render"},
     "outputs": RECORDS | {"output_links", "analysis", "study", "render", "checks", "spec"},
     "cli_common": {"errors", "files", "outputs", "spec", "study", "wanted"},
+    "urdf": {"__init__", "errors", "spec"},
+    "cli_import": {"cli_common", "errors", "files", "shelf", "spec", "urdf"},
     "cli": {
         "__init__",
+        "cli_import",
         "cli_common",
         "errors",
         "files",
