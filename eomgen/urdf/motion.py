@@ -70,7 +70,7 @@ def _planar(draft: Draft, joint: Joint) -> Motion:
         draft.scene.coordinates.append(Coordinate(shift[place], "m"))
     angle = draft.of_joint("theta", joint)
     draft.scene.coordinates.append(Coordinate(angle, "rad"))
-    return Motion(tuple(shift), ((AXES[normal], angle),))
+    return Motion(tuple(shift), ((_axis(joint.axis), angle),))
 
 
 OTHERS = {"fixed": _fixed, "floating": _floating, "planar": _planar}

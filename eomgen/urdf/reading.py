@@ -117,7 +117,7 @@ def _joint(element: Element, book: Book) -> Joint:
         parent=text(needed(element, parts, "parent", book), "link").text,
         child=text(needed(element, parts, "child", book), "link").text,
         origin=attempt(_origin, parts, book) or Origin(),
-        axis=attempt(_axis, parts, book) or X,
+        axis=attempt(_axis, kind, parts, book) or X,
         limit=attempt(_limit, kind, parts, book),
         damping=attempt(_damping, parts, book) or ZERO,
         mimic=attempt(_mimic, parts, book),
@@ -132,13 +132,17 @@ def _kind(element: Element) -> str:
     return attribute.text
 
 
-def _axis(parts: Parts, book: Book) -> Triple:
+def _axis(kind: str, parts: Parts, book: Book) -> Triple:
     element = only(parts, "axis", book)
     if element is None:
         return X
     axis = triple(element, "xyz")
     if not any(axis):
         raise Mistake(element.attributes["xyz"].place, "E712", "an axis must not be zero")
+    if kind == "planar" and sum(c != 0 for c in axis) > 1:
+        message = "a planar joint is normal to x, y or z: else nobody says which way it slides"
+        hint = "turn the joint's 'origin' instead"
+        raise Mistake(element.attributes["xyz"].place, "E712", message, hint)
     return axis
 
 
