@@ -11,7 +11,7 @@ from eomgen.spec.ledger import Ledger, Mistake, shown
 from eomgen.spec.reader import Point
 from eomgen.urdf import angles, inertias
 from eomgen.urdf.draft import Draft
-from eomgen.urdf.motion import Motion, damp, motions, positions
+from eomgen.urdf.motion import Motion, damp, motions
 from eomgen.urdf.parts import Book
 from eomgen.urdf.robot import Inertial, Joint, Link, Origin
 from eomgen.urdf.scene import NOWHERE, Body, Frame, Scene, Turn, plus
@@ -28,13 +28,12 @@ def scene(tree: Tree, book: Book, mend: bool) -> Scene:
     links = {n: _weighed(link, n in still, book, mend) for n, link in tree.links.items()}
     book.ledger.close()
     draft = Draft(replace(tree, links=links), book.notes)
-    places = positions(draft)
-    moving = motions(draft, places)
+    moving = motions(draft)
     frames: dict[str, str | None] = {WORLD: None}
     for joint in tree.joints:
         frames[joint.child] = _placed(draft, joint, moving[joint.name], frames)
-        if joint.damping and places[joint.name] != "0":
-            damp(draft, joint, places[joint.name])
+        if joint.damping and moving[joint.name].position != "0":
+            damp(draft, joint, moving[joint.name].position)
     return draft.scene
 
 

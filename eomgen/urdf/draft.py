@@ -18,6 +18,7 @@ class Draft:
 
     def __init__(self, tree: Tree, notes: Notes) -> None:
         self.tree, self.notes, self.scene = tree, notes, Scene()
+        self.scene.parameters |= {j.child: {} for j in tree.joints}
         self.names = Names()
         self.names.new(GRAVITY)
         joints = Names()
@@ -42,8 +43,7 @@ class Draft:
         if not value:
             return "0"
         name = self.names.new(wanted)
-        group = self.scene.parameters.setdefault(link, {})
-        group[name] = f"{written(value)} {unit}"
+        self.scene.parameters[link][name] = f"{written(value)} {unit}"
         return name
 
     def vector(self, link: str, letter: str, values: tuple[Decimal, ...]) -> Vector:

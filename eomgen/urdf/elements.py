@@ -55,10 +55,11 @@ class Place:
 
 @dataclass(frozen=True)
 class Attribute:
-    """The value of an attribute and where it begins."""
+    """The value of an attribute, where it begins, and where the attribute's name does."""
 
     text: str
     place: Place
+    name_place: Place
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ def read_tree(text: str) -> Element:
     try:
         tree.parser.Parse(tree.source.data, True)
     except expat.ExpatError as error:
-        spot = tree.source.point(tree.parser.ErrorByteIndex)
+        spot = tree.source.point(max(0, tree.parser.ErrorByteIndex))
         raise Mistake(spot, "E701", f"not XML: {expat.errors.messages[error.code]}") from None
     assert tree.root is not None
     return tree.root
@@ -135,7 +136,8 @@ class _Tree:
     def refuse(self, *_: object) -> None:
         """No document type: its entities could grow without bound or name other files."""
         message = "a document type (DOCTYPE) is not read"
-        raise Mistake(self.here(), "E702", message, "delete it; a URDF needs none")
+        start = self.source.data.rfind(b"<!DOCTYPE", 0, self.parser.CurrentByteIndex)
+        raise Mistake(Place(self.source, start), "E702", message, "delete it; a URDF needs none")
 
     def start(self, name: str, listed: list[str]) -> None:
         """Open an element; refuse what is past a limit."""
@@ -153,8 +155,8 @@ class _Tree:
         for key, text in zip(listed[::2], listed[1::2], strict=True):
             match = ATTRIBUTE.match(self.source.data, index)
             assert match is not None
-            place = Place(self.source, max(match.start(2), match.start(3)))
-            found[key] = Attribute(text, place)
+            value = Place(self.source, max(match.start(2), match.start(3)))
+            found[key] = Attribute(text, value, Place(self.source, match.start(1)))
             index = match.end()
         return found
 

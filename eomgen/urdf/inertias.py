@@ -16,7 +16,7 @@ from eomgen.urdf.numbers import written
 from eomgen.urdf.robot import Inertial, Link
 
 LONG = Context(prec=20, rounding=ROUND_CEILING)
-SHORT = Context(prec=2, rounding=ROUND_CEILING)  # of what is added
+SHORT = Context(prec=4, rounding=ROUND_CEILING)  # of what is added
 PLACES = ORDER[6]
 
 
@@ -58,7 +58,7 @@ def _raised(inertial: Inertial, by: Decimal) -> Inertial:
 
 
 def _lacking(inertial: Inertial) -> Decimal:
-    """Twice what the least second moment is below zero, rounded up to two digits."""
+    """Twice what the least second moment is below zero, rounded up to four digits."""
     entries = [float(inertial.inertia[i]) for i in PLACES if i is not None]
     tensor = np.array(entries).reshape(3, 3)
     moments = np.linalg.eigvalsh(np.eye(3) * np.trace(tensor) / 2 - tensor)

@@ -1,6 +1,5 @@
 """What joints do in terms of coordinates: displacements, turns, motors, dampers, followers."""
 
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 
@@ -15,27 +14,29 @@ FLOATING = (("x", "m"), ("y", "m"), ("z", "m"), ("yaw", "rad"), ("pitch", "rad")
 
 @dataclass(frozen=True)
 class Motion:
-    """A displacement in the axes of the joint, then turns."""
+    """A displacement in the axes of the joint, then turns; `position` where it is one scalar."""
 
     shift: Vector = NOWHERE
     turns: tuple[Turn, ...] = ()
+    position: str = "0"
 
 
-def motions(draft: Draft, positions: Mapping[str, str]) -> dict[str, Motion]:
-    """The motion of every joint; coordinates of floating and planar ones go into the draft."""
+def motions(draft: Draft) -> dict[str, Motion]:
+    """The motion of every joint; coordinates, motors and dampers go into the draft."""
+    free = {j.name: OWN[j.kind](draft, j) for j in draft.tree.joints if j.mimic is None}
+    places = {name: motion.position for name, motion in free.items()}
     found = {}
     for joint in draft.tree.joints:
-        if joint.kind in SINGLE:
-            found[joint.name] = _single(joint, positions[joint.name])
-        else:
-            found[joint.name] = OTHERS[joint.kind](draft, joint)
+        _follow(draft, joint, places)
+        found[joint.name] = free.get(joint.name) or _single(joint, places[joint.name])
     return found
 
 
 def _single(joint: Joint, position: str) -> Motion:
     if joint.kind in SLIDES:
-        return Motion(tuple(times(factor, position) for factor in direction(joint.axis)))
-    return Motion(turns=((_axis(joint.axis), position),))
+        shift = tuple(times(factor, position) for factor in direction(joint.axis))
+        return Motion(shift, position=position)
+    return Motion(turns=((_axis(joint.axis), position),), position=position)
 
 
 def _axis(axis: Triple) -> str:
@@ -73,34 +74,17 @@ def _planar(draft: Draft, joint: Joint) -> Motion:
     return Motion(tuple(shift), ((_axis(joint.axis), angle),))
 
 
-OTHERS = {"fixed": _fixed, "floating": _floating, "planar": _planar}
+def _follow(draft: Draft, joint: Joint, places: dict[str, str]) -> None:
+    """The position of a joint and, before it, of the joints that it follows."""
+    joints = {j.name: j for j in draft.tree.joints}
+    chain = [joint]
+    while (mimic := chain[-1].mimic) and chain[-1].name not in places:
+        chain.append(joints[mimic.joint])
+    for follower in reversed(chain[:-1]):
+        places[follower.name] = _followed(draft, follower, joints, places)
 
 
-def positions(draft: Draft) -> dict[str, str]:
-    """The position of every joint of one coordinate; these and their motors go into the draft."""
-    joints = {j.name: j for j in draft.tree.joints if j.kind in SINGLE}
-    found: dict[str, str] = {}
-    for joint in joints.values():
-        if joint.mimic is None:
-            found[joint.name] = _coordinate(draft, joint)
-    for joint in joints.values():
-        chain = list(_unknown_leaders(joint, joints, found))
-        for follower in reversed(chain):
-            found[follower.name] = _followed(draft, follower, joints, found)
-    return found
-
-
-def _unknown_leaders(
-    joint: Joint, joints: dict[str, Joint], found: dict[str, str]
-) -> Iterator[Joint]:
-    """The joint and its leaders up to one whose position is known."""
-    while joint.name not in found:
-        assert joint.mimic is not None
-        yield joint
-        joint = joints[joint.mimic.joint]
-
-
-def _coordinate(draft: Draft, joint: Joint) -> str:
+def _driven(draft: Draft, joint: Joint) -> Motion:
     """A new coordinate, with its motor."""
     slides = joint.kind in SLIDES
     name, motor = draft.of_joint("q", joint), draft.of_joint("tau", joint)
@@ -108,7 +92,7 @@ def _coordinate(draft: Draft, joint: Joint) -> str:
     draft.scene.coordinates.append(Coordinate(name, unit, *_limits(joint, unit)))
     draft.scene.inputs[motor] = "N" if slides else "N*m"
     draft.scene.forces.append(Along(draft.joints[joint.name], name, motor))
-    return name
+    return _single(joint, name)
 
 
 def _limits(joint: Joint, unit: str) -> tuple[tuple[str, str] | None, str]:
@@ -144,3 +128,8 @@ def damp(draft: Draft, joint: Joint, position: str) -> None:
     name = draft.joints[joint.name]
     damping = draft.parameter(joint.child, f"d_{name}", joint.damping, unit)
     draft.scene.dampers.append(Along(name, position, damping))
+
+
+OWN = {  # kind of joint -> its motion where it follows no other
+    "fixed": _fixed, "floating": _floating, "planar": _planar, **dict.fromkeys(SINGLE, _driven),
+}  # fmt: skip

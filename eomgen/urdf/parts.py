@@ -90,12 +90,12 @@ def _unknown_attribute(name: str, attribute: Attribute, owner: str, notes: Notes
     kind = KINDS[owner]
     if kind.strict or get_close_matches(name[:60], kind.attributes, 1, NEAR):
         message = f"unknown attribute {shown(name)} of '{owner}'"
-        raise Mistake(attribute.place, "E704", message, suggestion(name, kind.attributes))
+        raise Mistake(attribute.name_place, "E704", message, suggestion(name, kind.attributes))
     if owner == "robot" and name.partition(":")[0] in HARMLESS:
         return
     if owner == "dynamics" and name == "friction" and _is_zero(attribute):
         return
-    notes.ignored(f"{shown(name)} of '{owner}'", attribute.place)
+    notes.ignored(f"{shown(name)} of '{owner}'", attribute.name_place)
 
 
 def _is_zero(attribute: Attribute) -> bool:

@@ -151,6 +151,9 @@ def _limit(kind: str, parts: Parts, book: Book) -> tuple[Decimal, Decimal] | Non
     element = only(parts, "limit", book)
     if element is None:
         return None
+    if parts["mimic"]:
+        book.notes.ignored("'limit' of a joint that follows another", element.place)
+        return None
     given = [name for name in ("lower", "upper") if name in element.attributes]
     if kind == "continuous":
         for name in given:
@@ -180,10 +183,14 @@ def _mimic(parts: Parts, book: Book) -> Mimic | None:
     element = only(parts, "mimic", book)
     if element is None:
         return None
+    multiplier = scalar(element, "multiplier", Decimal(1))
+    if not multiplier:
+        place = element.attributes["multiplier"].place
+        raise Mistake(place, "E715", "a multiplier of zero", "make the joint fixed")
     return Mimic(
         text(element, "joint").text,
         element.place,
-        scalar(element, "multiplier", Decimal(1)),
+        multiplier,
         scalar(element, "offset", ZERO),
     )
 

@@ -60,7 +60,8 @@ def _parameters(groups: Mapping[str, Mapping[str, str]]) -> Iterator[str]:
     yield "parameters:"
     yield "  g: 9.81 m/s^2"
     for link, entries in groups.items():
-        yield f"  # {printable(link)}"
+        if entries:
+            yield f"  # {printable(link)}"
         yield from (f"  {name}: {value}" for name, value in entries.items())
 
 
@@ -74,9 +75,10 @@ def _point(name: str, frame: Frame) -> str:
 
 
 def _body(body: Body) -> Iterator[str]:
-    """A mere frame in one line, a body in one line for each key."""
-    if body.mass == "0" and not body.inertia:
-        yield f"{body.name}: {{mass: 0, frame: {_frame(body.frame)}}}"
+    """A mere frame in one line where it fits, a body in one line for each key."""
+    line = f"{body.name}: {{mass: 0, frame: {_frame(body.frame)}}}"
+    if body.mass == "0" and not body.inertia and len(line) + 2 <= WIDEST:
+        yield line
         return
     yield f"{body.name}:"
     yield f"  mass: {body.mass}"
