@@ -1,5 +1,6 @@
 """Optional programs on the path: a test that needs one says so, and CI forbids to skip it."""
 
+import importlib
 import os
 import shutil
 
@@ -14,3 +15,11 @@ def tool(name):
     if not found:
         (pytest.fail if os.environ.get(STRICT) else pytest.skip)(f"{name} is not installed")
     return found
+
+
+def library(name):
+    """A module that only tests need; without it the test is skipped, or fails as above."""
+    try:
+        return importlib.import_module(name)
+    except ModuleNotFoundError:
+        return (pytest.fail if os.environ.get(STRICT) else pytest.skip)(f"{name} is not installed")
