@@ -22,7 +22,8 @@ EXACT_WITHIN = "1e-9"  # rad
 )
 @click.argument("robot", type=str)
 @click.option("-o", "--output", default="-", show_default=True, help="Spec; - is stdout.")
-@click.option("--floating-base", is_flag=True, help="The first link moves freely (6 coordinates).")
+@click.option("--floating-base", is_flag=True, help="The first link moves freely.")
+@click.option("--euler-angles", is_flag=True, help="Free links turn by angles, no quaternion.")
 @click.option(
     "--round-angles", is_flag=True, help="Angles of the file become multiples of pi/12 where near."
 )
@@ -39,10 +40,13 @@ def import_robot(robot: str, output: str, force: bool, format_: str, **wishes: A
     follows another (mimic) has the formula for its coordinate.
     """
     from eomgen import urdf
+    from eomgen.urdf.wishes import Wishes
 
     with reporting(format_, files.shown(robot)):
         within = _within(wishes["round_angles"], wishes["within"])
-        wanted = urdf.Wishes(wishes["floating_base"], wishes["mend_inertias"], within)
+        wanted = Wishes(
+            wishes["floating_base"], wishes["euler_angles"], wishes["mend_inertias"], within
+        )
         made = urdf.imported(files.read(robot), files.shown(robot), wanted)
     for note in made.notes:
         click.echo(f"{files.shown(robot)}:{note.line}:{note.column}: note: {note.text}", err=True)

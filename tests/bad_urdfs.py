@@ -164,7 +164,7 @@ BAD = (
     Bad(
         "mimic of zero",
         grown("</joint>", '<mimic joint="hinge" multiplier="0.0"/></joint>'),
-        "20:115 E715",
+        "20:114 E715",
     ),
     Bad("mimic without joint", grown("</joint>", "<mimic/></joint>"), "20:81 E706"),
     Bad("nothing moves", changed("revolute", "fixed"), "1:1 E716"),

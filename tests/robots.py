@@ -20,16 +20,17 @@ from eomgen import spec, urdf
 from eomgen.algebra.assemble import assemble
 from eomgen.compile import machine_of, program
 from eomgen.interpreter import FLOAT, run
+from eomgen.mechanics import speeds
 from eomgen.model import Place, Point
 from eomgen.urdf.names import identifier
 
 FOLDER = Path(__file__).parent / "urdf"
 OFFSET = (0.11, -0.23, 0.31)  # of the point, in the axes of the last link
-WORDS = {  # kind of joint -> first words of the names of its coordinates
-    **dict.fromkeys(("revolute", "continuous", "prismatic"), ("q",)),
-    "planar": ("x", "y", "theta"),
-    "floating": ("x", "y", "z", "yaw", "pitch", "roll"),
-}
+LONE = ("revolute", "continuous", "prismatic")
+MOVING = (*LONE, "planar", "floating")
+ANGLES = ("x_{}", "y_{}", "z_{}", "yaw_{}", "pitch_{}", "roll_{}")
+QUATERNION = ("x_{}", "y_{}", "z_{}", *(f"e_{{}}_{i}" for i in range(4)))
+SPINNING = ("x_{}'", "y_{}'", "z_{}'", *(f"omega_e_{{}}_{i}" for i in "xyz"))
 Answer = namedtuple("Answer", "mass_matrix bias accelerations jacobian")
 Speeds = namedtuple("Speeds", "position partials drift")  # of one joint: theirs, B, B' y'
 
@@ -63,14 +64,24 @@ def spin_rate(angles, rates):
     return np.array(by_pitch) * dp + np.array(by_roll) * dr
 
 
+def turned_by(quaternion):
+    """The axes turned by a unit quaternion, its scalar part first (Rodrigues)."""
+    scalar, (x, y, z) = quaternion[0], quaternion[1:]
+    tilde = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + 2 * scalar * tilde + 2 * tilde @ tilde
+
+
 def floating(y, dy, in_body):
-    """Displacements below and Euler's angles -> velocity (in the body's axes or not) and spin."""
-    axes, spin = axes_of(*y[3:]), spin_of(*y[4:])
+    """Displacements below and an attitude -> velocity (in the body's axes or not) and spin."""
+    if len(y) == 7:
+        axes, spin, spin_change = turned_by(y[3:]), np.eye(3), np.zeros((3, 3))
+    else:
+        axes, spin, spin_change = axes_of(*y[3:]), spin_of(*y[4:]), spin_rate(y[3:], dy[3:])
     velocity = axes.T if in_body else np.eye(3)
     partials = np.block([[velocity, np.zeros((3, 3))], [np.zeros((3, 3)), spin]])
     drift = np.concatenate([
         -np.cross(spin @ dy[3:], axes.T @ dy[:3]) if in_body else np.zeros(3),
-        spin_rate(y[3:], dy[3:]) @ dy[3:],
+        spin_change @ dy[3:],
     ])  # fmt: skip
     return axes, partials, drift
 
@@ -126,7 +137,7 @@ class Robot:
     @cached_property
     def joints(self):
         """Moving joints by name."""
-        return {j.get("name"): j for j in self.root.findall("joint") if j.get("type") in WORDS}
+        return {j.get("name"): j for j in self.root.findall("joint") if j.get("type") in MOVING}
 
     @cached_property
     def model(self):
@@ -137,35 +148,46 @@ class Robot:
         probe = Point("probe", Place(tuple(sp.Rational(str(c)) for c in OFFSET), on=last))
         return replace(model, points=(*model.points, probe))
 
+    @property
+    def speeds(self):
+        """The names of the speeds."""
+        return [symbol.name for symbol in speeds.symbols(self.model)]
+
     @cached_property
     def last(self):
         """The name of the link that the probe is on, as the file spells it."""
         names = (link.get("name") for link in self.root.findall("link"))
         return next(n for n in names if identifier(n, "link") == self.model.points[-1].place.on)
 
+    def _words(self, joint):
+        """The names of the coordinates of a joint, and of its speeds."""
+        kind = joint.get("type")
+        if kind == "floating" and not self.wishes.euler:
+            return QUATERNION, SPINNING
+        found = ANGLES if kind == "floating" else ("q_{}",)
+        if kind == "planar":
+            axis = joint.find("axis").get("xyz").split()
+            normal = next(i for i, c in enumerate(axis) if float(c))
+            found = (*("xyz"[(normal + k) % 3] + "_{}" for k in (1, 2)), "theta_{}")
+        return found, tuple(f"{word}'" for word in found)
+
     @cached_property
     def coupling(self):
-        """G, o and the first row of each joint: positions of all joints y = G q + o."""
-        ours = {c.name: i for i, c in enumerate(self.model.coordinates)}
-        rows, offsets, places = [], [], {}
+        """Positions of all joints y = G q + o, their speeds = H u; where each joint's stand."""
+        ours = [c.name for c in self.model.coordinates], self.speeds
+        matrices, offsets, places = ([], []), [], {}
         for name, joint in self.joints.items():
-            places[name] = len(rows)
-            words = self._words(joint)
             factor, offset, leader = self._leader(name)
-            for word in words:
-                row = np.zeros(len(ours))
-                row[ours[f"{word}_{identifier(leader, 'joint')}"]] = factor
-                rows.append(row)
-                offsets.append(offset)
-        return np.array(rows), np.array(offsets), places
-
-    def _words(self, joint):
-        """Where the words of a planar joint say which way it slides."""
-        if joint.get("type") != "planar":
-            return WORDS[joint.get("type")]
-        axis = joint.find("axis").get("xyz").split() if joint.find("axis") is not None else "100"
-        normal = next(i for i, c in enumerate(axis) if float(c))
-        return (*("xyz"[(normal + k) % 3] for k in (1, 2)), "theta")
+            starts = [len(rows) for rows in matrices]
+            for names, rows, words in zip(ours, matrices, self._words(joint), strict=True):
+                for word in words:
+                    row = np.zeros(len(names))
+                    row[names.index(word.format(identifier(leader, "joint")))] = factor
+                    rows.append(row)
+            offsets += [offset] * len(self._words(joint)[0])
+            places[name] = [slice(a, len(rows)) for a, rows in zip(starts, matrices, strict=True)]
+        G, H = map(np.array, matrices)
+        return G, np.array(offsets), H, places
 
     def _leader(self, name):
         """Factor and offset of a joint's position, and the joint that leads it."""
@@ -183,29 +205,31 @@ class Robot:
         for joint in self.joints.values():
             dynamics = joint.find("dynamics")
             value = 0.0 if dynamics is None else float(dynamics.get("damping", 0))
-            found += [value] * len(WORDS[joint.get("type")])
+            found += [value] * len(self._words(joint)[1])
         return np.diag(found)
 
     def states(self, count, seed=1):
-        """Random positions, rates and generalized forces."""
-        chance, n = random.Random(seed), len(self.model.coordinates)
-        near = [0.9 if c.name.startswith("pitch_") else 2.0 for c in self.model.coordinates]
-        return [
-            (
-                np.array([chance.uniform(-1, 1) * a for a in near]),
-                np.array([chance.uniform(-2, 2) for _ in range(n)]),
-                self.driven @ np.array([chance.uniform(-2, 2) for _ in self.model.inputs]),
-            )
-            for _ in range(count)
-        ]
+        """Random coordinates, speeds and generalized forces."""
+        chance = random.Random(seed)
+        model, names = self.model, self.speeds
+        near = [0.9 if c.name.startswith("pitch_") else 2.0 for c in model.coordinates]
+        found = []
+        for _ in range(count):
+            q = np.array([chance.uniform(-1, 1) * a for a in near])
+            for quaternion in model.quaternions:
+                first = [c.symbol for c in model.coordinates].index(quaternion.symbols[0])
+                q[first : first + 4] /= np.linalg.norm(q[first : first + 4])
+            u = np.array([chance.uniform(-2, 2) for _ in names])
+            found.append((q, u, self.driven @ [chance.uniform(-2, 2) for _ in model.inputs]))
+        return found
 
     @cached_property
     def driven(self):
-        """Which coordinate each input drives."""
-        names = [c.name for c in self.model.coordinates]
+        """Which speed each input drives."""
+        names = self.speeds
         matrix = np.zeros((len(names), len(self.model.inputs)))
         for column, given in enumerate(self.model.inputs):
-            matrix[names.index("q" + given.name.removeprefix("tau")), column] = 1
+            matrix[names.index("q" + given.name.removeprefix("tau") + "'"), column] = 1
         return matrix
 
     @cached_property
@@ -215,18 +239,19 @@ class Robot:
         compiled = program(machine)
         kinematics = machine.kinematics
         one = kinematics.algebra.number(1)
+        unknown = speeds.symbols(self.model)
         partials = [
-            kinematics.algebra.along(v, {c.rate: one})
+            kinematics.algebra.along(v, {u: one})
             for v in kinematics.velocity("probe")
-            for c in self.model.coordinates
+            for u in unknown
         ]
         names = ("mass_matrix", "bias", "generalized_forces", "accelerations")
-        jacobian = assemble("jacobian", "", (3, len(self.model.coordinates)), partials)
+        jacobian = assemble("jacobian", "", (3, len(unknown)), partials)
         return {name: compiled.function(name) for name in names} | {"jacobian": jacobian}
 
     def ours(self, q, v, forces):
         """Our answer."""
-        n, inputs = len(q), self.driven.T @ forces
+        n, inputs = len(v), self.driven.T @ forces
         given = {
             "time": [0.0],
             "state": [*q, *v],
@@ -249,23 +274,23 @@ class Robot:
         they: its size and, for each joint, where its positions and speeds stand and `Speeds`; its
         answer for positions and speeds.
         """
-        G, offsets, places = self.coupling
-        y, dy = G @ q + offsets, G @ v
-        position, partials = they.rest(), np.zeros((they.speeds, len(y)))
-        drift = np.zeros(they.speeds)
+        G, offsets, H, places = self.coupling
+        y, dy = G @ q + offsets, H @ v
+        position, drift = they.rest(), np.zeros(they.speeds)
+        partials = np.zeros((they.speeds, len(dy)))
         for name, joint in self.joints.items():
-            here = slice(places[name], places[name] + len(WORDS[joint.get("type")]))
-            found = they.of_joint(joint, y[here], dy[here])
+            here, moving = places[name]
+            found = they.of_joint(joint, y[here], dy[moving])
             at, rows = they.places(joint)
             position[at], drift[rows] = found.position, found.drift
-            partials[rows, here] = found.partials
-        speeds, resistance = partials @ dy, G.T @ self.damping @ dy
-        mass, bias, jacobian = they.answer(position, speeds)
-        P = partials @ G
+            partials[rows, moving] = found.partials
+        their_speeds, resistance = partials @ dy, H.T @ self.damping @ dy
+        mass, bias, jacobian = they.answer(position, their_speeds)
+        P = partials @ H
         found = P.T @ mass @ P, P.T @ (bias + mass @ drift) + resistance
         if P.shape[0] == P.shape[1]:
             # w' = B q'' + B' q' by their own forward dynamics
-            pushed = they.forward(position, speeds, np.linalg.solve(P.T, forces - resistance))
+            pushed = they.forward(position, their_speeds, np.linalg.solve(P.T, forces - resistance))
             accelerations = np.linalg.solve(P, pushed - drift)
         else:
             accelerations = np.linalg.solve(found[0], forces - found[1])
@@ -310,13 +335,13 @@ class Pinocchio:
                 return Speeds([*y[:3], *quaternion], partials, drift)
         return Speeds(y, np.eye(1), np.zeros(1))
 
-    def answer(self, position, speeds):
+    def answer(self, position, rates):
         """M, bias without dampers, Jacobian of the probe."""
         pinocchio, model = self.library, self.model
         data = model.createData()
         mass = pinocchio.crba(model, data, position)
         mass = np.triu(mass) + np.triu(mass, 1).T
-        bias = pinocchio.nonLinearEffects(model, data, position, speeds)
+        bias = pinocchio.nonLinearEffects(model, data, position, rates)
         frame = model.getFrameId(self.robot.last, pinocchio.FrameType.BODY)
         data = model.createData()
         pinocchio.computeJointJacobians(model, data, position)
@@ -326,9 +351,9 @@ class Pinocchio:
         arm = data.oMf[frame].rotation @ np.array(OFFSET)
         return mass, bias, whole[:3] - pinocchio.skew(arm) @ whole[3:]
 
-    def forward(self, position, speeds, forces):
+    def forward(self, position, rates, forces):
         """Its accelerations, by the articulated-body algorithm."""
-        return self.library.aba(self.model, self.model.createData(), position, speeds, forces)
+        return self.library.aba(self.model, self.model.createData(), position, rates, forces)
 
 
 class MuJoCo:
@@ -377,11 +402,11 @@ class MuJoCo:
             return Speeds([*(at + below @ y[:3]), *quaternion], partials, drift)
         return Speeds(y, np.eye(len(y)), np.zeros(len(y)))
 
-    def answer(self, position, speeds):
+    def answer(self, position, rates):
         """M, bias without dampers, Jacobian of the probe."""
         mujoco, model = self.library, self.model
         data = mujoco.MjData(model)
-        data.qpos[:], data.qvel[:] = position, speeds
+        data.qpos[:], data.qvel[:] = position, rates
         mujoco.mj_forward(model, data)
         mass = np.zeros((model.nv, model.nv))
         mujoco.mj_fullM(model, data, mass)
@@ -391,10 +416,10 @@ class MuJoCo:
         mujoco.mj_jac(model, data, jacobian, turning, point, body)
         return mass, data.qfrc_bias.copy(), jacobian
 
-    def forward(self, position, speeds, forces):
+    def forward(self, position, rates, forces):
         """Its accelerations."""
         data = self.library.MjData(self.model)
-        data.qpos[:], data.qvel[:], data.qfrc_applied[:] = position, speeds, forces
+        data.qpos[:], data.qvel[:], data.qfrc_applied[:] = position, rates, forces
         self.library.mj_forward(self.model, data)
         return data.qacc.copy()
 

@@ -9,9 +9,10 @@ from robots import FOLDER
 
 from eomgen import spec
 from eomgen.spec.reader import Point
-from eomgen.urdf import Wishes, imported
+from eomgen.urdf import imported
 from eomgen.urdf.names import Names, identifier
 from eomgen.urdf.numbers import direction, number, written
+from eomgen.urdf.wishes import Wishes
 
 GOLDEN = FOLDER / "gripper.yaml"
 ALL = tuple(sorted(FOLDER.glob("*.urdf")))
@@ -43,7 +44,7 @@ def test_every_line_fits_and_every_parameter_is_used(path):
     formulas = [*model.gravity, *(c for p in places for c in p.components)]
     formulas += [c for p in model.points for c in p.place.components]
     formulas += [f for b in model.bodies for f in (b.mass, *b.inertia)]
-    formulas += [t.angle for b in model.bodies for t in b.frame.turns]
+    formulas += [f for b in model.bodies for t in b.frame.turns for f in t.formulas]
     formulas += [f for d in model.dampers for f in (d.along, d.damping)]
     used = set().union(*(f.free_symbols for f in formulas))
     assert {p.symbol for p in model.parameters} <= used
@@ -186,11 +187,32 @@ def test_angles_near_multiples_of_a_twelfth_turn_are_rounded_when_asked():
     assert rough == ["-5*pi/6", "pi/2", "q_hinge"]
 
 
-def test_a_floating_base_has_six_coordinates():
+def test_a_floating_base_has_three_lengths_and_a_quaternion():
     model = model_of(grown(), floating_base=True)
+    parts = [f"e_base_{i}" for i in range(4)]
+    names = ["x_base", "y_base", "z_base", *parts, "q_hinge", "q_wrist"]
+    assert [c.name for c in model.coordinates] == names
+    assert [i.name for i in model.inputs] == ["tau_hinge", "tau_wrist"]
+    assert model.initial["e_base_0"] == 1
+
+
+def test_a_floating_base_turns_by_angles_when_asked():
+    model = model_of(grown(), floating_base=True, euler=True)
     names = ["x_base", "y_base", "z_base", "yaw_base", "pitch_base", "roll_base"]
     assert [c.name for c in model.coordinates] == [*names, "q_hinge", "q_wrist"]
-    assert [i.name for i in model.inputs] == ["tau_hinge", "tau_wrist"]
+    assert [str(t.axis) for t in model.bodies[0].frame.turns] == [
+        "(0, 0, 1)", "(0, 1, 0)", "(1, 0, 0)"
+    ]  # fmt: skip
+
+
+def test_the_implied_names_of_a_quaternion_are_kept_free():
+    text = grown().replace('"hand"', '"e_base_0"')
+    names = [c.name for c in model_of(text, floating_base=True).coordinates]
+    assert names[3:7] == [f"e_base_2_{i}" for i in range(4)]
+
+
+def test_the_world_is_called_the_world():
+    assert not any("called" in s for s in said(BASE.replace('"base"', '"world"')))
 
 
 def test_an_impossible_inertia_is_mended_when_asked():

@@ -8,7 +8,8 @@ from robots import FOLDER
 
 from eomgen.errors import SpecError
 from eomgen.spec.report import render
-from eomgen.urdf import Wishes, imported
+from eomgen.urdf import imported
+from eomgen.urdf.wishes import Wishes
 
 GOOD = tuple(
     path.read_text(encoding="utf-8")

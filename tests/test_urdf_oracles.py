@@ -1,23 +1,27 @@
 """Imported robots move as Pinocchio's and MuJoCo's do: M, h, accelerations and point Jacobians."""
 
+from pathlib import Path
+
 import pytest
 from robots import FOLDER, MuJoCo, Pinocchio, Robot, difference
-from tools import library
+from tools import library, missing
 
-from eomgen.urdf import Wishes
+from eomgen.urdf.wishes import Wishes
 
+pytestmark = pytest.mark.slow  # the quick tests do without programs of a gigabyte
 TOLERANCE = 1e-12
 STATES = 5
 FREE = Wishes(floating_base=True)
-LONG = ("chain_20", "arm_7r", "torso")
+ANGLES = Wishes(floating_base=True, euler=True)
 OWN = tuple(
-    pytest.param(path.stem, Wishes(), id=path.stem, marks=[pytest.mark.slow] * (path.stem in LONG))
-    for path in sorted(FOLDER.glob("*.urdf"))
+    pytest.param(path.stem, Wishes(), id=path.stem) for path in sorted(FOLDER.glob("*.urdf"))
 )
 FLOATING = tuple(
-    pytest.param(name, FREE, id=f"{name}, floating", marks=[pytest.mark.slow] * slow)
-    for name, slow in (("quadruped", True), ("scara", False), ("arm_6r", True))
+    pytest.param(name, wishes, id=f"{name}, {said}")
+    for name in ("quadruped", "scara", "arm_6r")
+    for wishes, said in ((FREE, "quaternion"), (ANGLES, "angles"))
 )
+BY_ANGLES = (pytest.param("satellite", Wishes(euler=True), id="satellite, angles"),)
 SHIPPED = (  # of the wheel example-robot-data, by the end of their paths
     "double_pendulum.urdf", "double_pendulum_continuous.urdf", "TwoDofs.urdf", "iris.urdf",
     "borinot_flying_arm_2.urdf", "hextilt_flying_arm_5.urdf", "so100.urdf", "so101.urdf",
@@ -34,7 +38,7 @@ def compare(robot, program):
         assert max(found.values()) < TOLERANCE, found
 
 
-@pytest.mark.parametrize(("name", "wishes"), [*OWN, *FLOATING])
+@pytest.mark.parametrize(("name", "wishes"), [*OWN, *FLOATING, *BY_ANGLES])
 @pytest.mark.parametrize("kind", [Pinocchio, MuJoCo])
 def test_a_robot_of_ours_moves_as_theirs(name, wishes, kind):
     library(kind.__name__.lower())
@@ -42,23 +46,22 @@ def test_a_robot_of_ours_moves_as_theirs(name, wishes, kind):
     compare(robot, kind(robot))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_robot_of_the_wheel_moves_as_theirs(name):
-    pinocchio, mujoco = library("pinocchio"), library("mujoco")
-    del pinocchio, mujoco
     robot = Robot(shipped(name).read_text(encoding="utf-8"))
     for kind in (Pinocchio, MuJoCo):
+        library(kind.__name__.lower())
         compare(robot, kind(robot))
 
 
 def shipped(name):
     """A robot of the wheel, whose files lie beside Pinocchio's."""
-    from pathlib import Path
-
-    root = Path(library("pinocchio").__file__).parents[4]
-    (found,) = (root / "share" / "example-robot-data").rglob(name)
-    return found
+    root = Path(library("pinocchio").__file__).parents[4] / "share" / "example-robot-data"
+    found = list(root.rglob(name))
+    if not found:
+        missing("example-robot-data")
+    assert len(found) == 1
+    return found[0]
 
 
 def test_there_are_more_than_ten():

@@ -4,7 +4,6 @@ text -> elements -> Robot -> tree -> scene -> text of the spec
 """
 
 from dataclasses import dataclass
-from decimal import Decimal
 from pathlib import PurePath
 
 from eomgen import spec
@@ -14,15 +13,7 @@ from eomgen.urdf import angles, build, elements, reading, tree, writing
 from eomgen.urdf.notes import Note
 from eomgen.urdf.parts import Book
 from eomgen.urdf.robot import Robot
-
-
-@dataclass(frozen=True)
-class Wishes:
-    """How a robot is imported."""
-
-    floating_base: bool = False
-    mend: bool = False  # inertias that no body can have are raised
-    within: Decimal | None = None  # angles so near to a multiple of pi/12 become exact
+from eomgen.urdf.wishes import Wishes
 
 
 @dataclass(frozen=True)
@@ -45,7 +36,7 @@ def imported(data: bytes, file: str, wishes: Wishes) -> Imported:
         robot = angles.rounded(robot, wishes.within, book.notes)
     angles.point_out(robot, book.notes)
     base = "floating" if wishes.floating_base else "fixed"
-    scene = build.scene(tree.of(robot, base, book.ledger), book, wishes.mend)
+    scene = build.scene(tree.of(robot, base, book.ledger), book, wishes)
     notes = book.notes.listed()
     made = writing.spec(scene, robot.name, _remarks(file, notes))
     _check(made, file)

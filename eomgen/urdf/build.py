@@ -14,20 +14,21 @@ from eomgen.urdf.draft import Draft
 from eomgen.urdf.motion import Motion, damp, motions
 from eomgen.urdf.parts import Book
 from eomgen.urdf.robot import Inertial, Joint, Link, Origin
-from eomgen.urdf.scene import NOWHERE, Body, Frame, Scene, Turn, plus
+from eomgen.urdf.scene import NOWHERE, Body, Frame, Scene, Turn, plus, turn
 from eomgen.urdf.tree import WORLD, Tree, leader
+from eomgen.urdf.wishes import Wishes
 
 TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
 
 
-def scene(tree: Tree, book: Book, mend: bool) -> Scene:
+def scene(tree: Tree, book: Book, wishes: Wishes) -> Scene:
     """The scene of a robot; raises `SpecError` where something cannot move as it should."""
     _check_motion(tree, book.ledger)
     _check_masses(tree, book.ledger)
     still = _still(tree)
-    links = {n: _weighed(link, n in still, book, mend) for n, link in tree.links.items()}
+    links = {n: _weighed(link, n in still, book, wishes.mend) for n, link in tree.links.items()}
     book.ledger.close()
-    draft = Draft(replace(tree, links=links), book.notes)
+    draft = Draft(replace(tree, links=links), book.notes, wishes.euler)
     moving = motions(draft)
     frames: dict[str, str | None] = {WORLD: None}
     for joint in tree.joints:
@@ -88,12 +89,12 @@ def _placed(
     on = frames[joint.parent]
     if link.inertial is None and joint.kind == "fixed" and not joint.origin.turns:
         if not draft.tree.children(link.name):
-            _point(draft, joint, on)
+            _point(draft, link, joint.origin, on)
             return on
         if not joint.origin.moves:
             return on
     frame = _frame(draft, joint, motion, on)
-    name = draft.links[link.name]
+    name = draft.link(link)
     if link.inertial is None:
         draft.scene.bodies.append(Body(name, frame))
     else:
@@ -101,12 +102,11 @@ def _placed(
     return name
 
 
-def _point(draft: Draft, joint: Joint, on: str | None) -> None:
+def _point(draft: Draft, link: Link, origin: Origin, on: str | None) -> None:
     """A point for a link of which nothing but the place matters; none for the world's origin."""
-    if on is None and not joint.origin.moves:
-        return
-    at = draft.vector(joint.child, "p", joint.origin.xyz)
-    draft.scene.points[draft.links[joint.child]] = Frame(on, at)
+    if on is not None or origin.moves:
+        at = draft.vector(link.name, "p", origin.xyz)
+        draft.scene.points[draft.link(link)] = Frame(on, at)
 
 
 def _frame(draft: Draft, joint: Joint, motion: Motion, on: str | None) -> Frame:
@@ -123,7 +123,7 @@ def _frame(draft: Draft, joint: Joint, motion: Motion, on: str | None) -> Frame:
 def _turns(origin: Origin) -> tuple[Turn, ...]:
     """Rz(yaw) Ry(pitch) Rx(roll), body-fixed from left to right, without zeros."""
     pairs = zip("zyx", reversed(origin.rpy), strict=False)
-    return tuple((axis, angles.text(angle)) for axis, angle in pairs if not angle.is_zero)
+    return tuple(turn(axis, angles.text(angle)) for axis, angle in pairs if not angle.is_zero)
 
 
 def _weigh(draft: Draft, link: str, frame: Frame, inertial: Inertial) -> None:

@@ -3,6 +3,7 @@
 from decimal import Decimal
 
 from eomgen.spec.ledger import shown
+from eomgen.spec.quaternions import symbols
 from eomgen.urdf.names import Names
 from eomgen.urdf.notes import Notes
 from eomgen.urdf.numbers import written
@@ -16,17 +17,19 @@ GRAVITY = "g"
 class Draft:
     """The scene so far, with the names of the robot's links and joints in it."""
 
-    def __init__(self, tree: Tree, notes: Notes) -> None:
+    def __init__(self, tree: Tree, notes: Notes, euler: bool) -> None:
         self.tree, self.notes, self.scene = tree, notes, Scene()
+        self.euler = euler  # attitudes by three angles
         self.scene.parameters |= {j.child: {} for j in tree.joints}
         self.names = Names()
         self.names.new(GRAVITY)
         joints = Names()
-        self.links = {j.child: self._link(tree.links[j.child]) for j in tree.joints}
+        self.links = {j.child: self.names.of(j.child, "link") for j in tree.joints}
         self.joints = {j.name: joints.of(j.name, "joint") for j in tree.joints}
 
-    def _link(self, link: Link) -> str:
-        name = self.names.of(link.name, "link")
+    def link(self, link: Link) -> str:
+        """The name of a link that is a body or a point; a note where it is not its own."""
+        name = self.links[link.name]
         if name != link.name:
             self.notes.add(f"link {shown(link.name)} is called {name}", link.spot)
         return name
@@ -37,6 +40,15 @@ class Draft:
         if name != f"{letter}_{joint.name}":
             self.notes.add(f"{letter} of joint {shown(joint.name)} is called {name}", joint.spot)
         return name
+
+    def quaternion(self, joint: Joint) -> tuple[str, tuple[str, ...]]:
+        """The name of a new quaternion, and of its speeds; the names of its parts are taken."""
+        while True:
+            own = symbols(self.of_joint("e", joint))
+            implied = {symbol.name for symbol in (*own.symbols, *own.speeds)}
+            if not implied & self.names.taken:
+                self.names.taken |= implied
+                return own.name, tuple(speed.name for speed in own.speeds)
 
     def parameter(self, link: str, wanted: str, value: Decimal, unit: str) -> str:
         """The name of a new parameter of a link; zero is none."""

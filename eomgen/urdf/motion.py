@@ -6,10 +6,10 @@ from decimal import Decimal
 from eomgen.urdf.draft import Draft
 from eomgen.urdf.numbers import direction, written
 from eomgen.urdf.robot import SINGLE, SLIDES, Joint, Triple
-from eomgen.urdf.scene import AXES, NOWHERE, Along, Coordinate, Turn, Vector, plus, times
+from eomgen.urdf.scene import AXES, NOWHERE, Along, Coordinate, Turn, Vector, plus, times, turn
 
 PITCH = ("-80 deg", "80 deg")  # Euler's angles are singular at 90 deg
-FLOATING = (("x", "m"), ("y", "m"), ("z", "m"), ("yaw", "rad"), ("pitch", "rad"), ("roll", "rad"))
+ANGLES = (("z", "yaw", None), ("y", "pitch", PITCH), ("x", "roll", None))
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ def _single(joint: Joint, position: str) -> Motion:
     if joint.kind in SLIDES:
         shift = tuple(times(factor, position) for factor in direction(joint.axis))
         return Motion(shift, position=position)
-    return Motion(turns=((_axis(joint.axis), position),), position=position)
+    return Motion(turns=(turn(_axis(joint.axis), position),), position=position)
 
 
 def _axis(axis: Triple) -> str:
@@ -52,13 +52,28 @@ def _fixed(draft: Draft, joint: Joint) -> Motion:
 
 
 def _floating(draft: Draft, joint: Joint) -> Motion:
-    """Three displacements in the axes below, then yaw, pitch and roll."""
-    names = [draft.of_joint(word, joint) for word, _ in FLOATING]
-    for name, (word, unit) in zip(names, FLOATING, strict=True):
-        limits = PITCH if word == "pitch" else None
-        draft.scene.coordinates.append(Coordinate(name, unit, limits))
-    x, y, z, yaw, pitch, roll = names
-    return Motion((x, y, z), (("z", yaw), ("y", pitch), ("x", roll)))
+    """Three displacements in the axes below, then an attitude."""
+    shift = tuple(draft.of_joint(axis, joint) for axis in AXES)
+    draft.scene.coordinates += [Coordinate(name, "m") for name in shift]
+    return Motion(shift, _angles(draft, joint) if draft.euler else _quaternion(draft, joint))
+
+
+def _angles(draft: Draft, joint: Joint) -> tuple[Turn, ...]:
+    """Yaw, pitch and roll."""
+    turns = []
+    for axis, word, limits in ANGLES:
+        name = draft.of_joint(word, joint)
+        draft.scene.coordinates.append(Coordinate(name, "rad", limits))
+        turns.append(turn(axis, name))
+    return tuple(turns)
+
+
+def _quaternion(draft: Draft, joint: Joint) -> tuple[Turn, ...]:
+    """A unit quaternion, whose speeds are the angular velocity."""
+    name, speeds = draft.quaternion(joint)
+    start = "[1, 0, 0, 0]"
+    draft.scene.coordinates.append(Coordinate(name, "quaternion", start=start, speeds=speeds))
+    return (f"{{quaternion: {name}}}",)
 
 
 def _planar(draft: Draft, joint: Joint) -> Motion:
@@ -71,7 +86,7 @@ def _planar(draft: Draft, joint: Joint) -> Motion:
         draft.scene.coordinates.append(Coordinate(shift[place], "m"))
     angle = draft.of_joint("theta", joint)
     draft.scene.coordinates.append(Coordinate(angle, "rad"))
-    return Motion(tuple(shift), ((_axis(joint.axis), angle),))
+    return Motion(tuple(shift), (turn(_axis(joint.axis), angle),))
 
 
 def _follow(draft: Draft, joint: Joint, places: dict[str, str]) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 AXES = "xyz"
 NOWHERE = ("0", "0", "0")
-Turn = tuple[str, str]  # axis and angle
+Turn = str  # such as [z, q]
 Vector = tuple[str, ...]  # three formulas
 
 
@@ -32,12 +32,13 @@ class Body:
 
 @dataclass(frozen=True)
 class Coordinate:
-    """A coordinate with its unit, its range and where it begins."""
+    """A coordinate with its unit, its range and where it begins; `speeds` if not its rate."""
 
     name: str
     unit: str
     range: tuple[str, str] | None = None
     start: str = "0"
+    speeds: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,11 @@ class Scene:
     points: dict[str, Frame] = field(default_factory=dict)
     dampers: list[Along] = field(default_factory=list)
     forces: list[Along] = field(default_factory=list)
+
+
+def turn(axis: str, angle: str) -> Turn:
+    """A turn about an axis."""
+    return f"[{axis}, {angle}]"
 
 
 def plus(left: str, right: str) -> str:

@@ -114,7 +114,7 @@ def _frame_parts(frame: Frame) -> Iterator[str]:
     if frame.at != NOWHERE or not frame.turns:
         yield f"at: {_list(frame.at)}"
     if frame.turns:
-        yield f"turn: {_list(_list(turn) for turn in frame.turns)}"
+        yield f"turn: {_list(frame.turns)}"
 
 
 def _along(load: Along, strength: str) -> str:
@@ -124,7 +124,8 @@ def _along(load: Along, strength: str) -> str:
 def _initial(scene: Scene) -> Iterator[str]:
     """At rest where the coordinates are zero, or in the middle of a range without zero."""
     starts = [f"{c.name}: {c.start}" for c in scene.coordinates]
-    rates = [f"{c.name}': 0" for c in scene.coordinates]
+    speeds = (s for c in scene.coordinates for s in c.speeds or (f"{c.name}'",))
+    rates = [f"{speed}: 0" for speed in speeds]
     yield f"initial: {{{', '.join(starts + rates)}}}"
 
 
