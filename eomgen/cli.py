@@ -29,6 +29,7 @@ from eomgen.cli_common import (
     studied,
     templates_option,
 )
+from eomgen.cli_import import import_robot
 from eomgen.cli_regressor import regressor
 from eomgen.errors import EomgenError, UsageError
 from eomgen.wanted import Wanted, wanted
@@ -277,6 +278,9 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
         return
     for path in shelf.eject_templates(names, output):
         click.echo(str(path))
+
+
+commands.add_command(import_robot)
 
 
 def main() -> NoReturn:

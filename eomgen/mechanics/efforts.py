@@ -24,7 +24,7 @@ from eomgen.mechanics.elongation import (
 from eomgen.mechanics.energies import has_potential
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.vectors import Vector, dot, scale, subtract, transform
-from eomgen.model import Damper, Force, Moment, Spring
+from eomgen.model import Damper, Drive, Force, Moment, Spring
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,8 @@ def nonconservative(kinematics: Kinematics[S]) -> Iterator[Effort[S]]:
             yield Effort(damper.name, "damper", (-pull,), (rate,))
     for force in model.forces:
         yield _force(kinematics, force)
+    for drive in model.drives:
+        yield _drive(kinematics, drive)
     for moment in model.moments:
         yield _moment(kinematics, moment)
 
@@ -62,6 +64,11 @@ def _force(kinematics: Kinematics[S], force: Force) -> Effort[S]:
     if force.source is not None:
         velocity = subtract(velocity, kinematics.velocity(force.source))
     return Effort(force.name, "force", vector, velocity)
+
+
+def _drive(kinematics: Kinematics[S], drive: Drive) -> Effort[S]:
+    rate = kinematics.rate(kinematics.algebra.of(drive.along))
+    return Effort(drive.name, "force", (kinematics.algebra.of(drive.force),), (rate,))
 
 
 def _moment(kinematics: Kinematics[S], moment: Moment) -> Effort[S]:
