@@ -48,6 +48,11 @@ class Study:
     links: LinkedStudy | None = None  # where the scene has constraints
 
     @property
+    def compiled(self) -> compile.Machine:
+        """What the program was made of: of a linked scene, the chosen formulation."""
+        return self.machine if self.links is None else self.links.chosen.machine
+
+    @property
     def freedom(self) -> int:
         """The degrees of freedom."""
         if self.links is None:
@@ -77,6 +82,16 @@ def of_model(model: Model, wanted: Wanted = AUTO) -> Study:
     machine = compile.machine_of(model)
     report = checked(derivation, machine)
     return Study(model, derivation, machine, compile.program(machine), report)
+
+
+def machine_of(text: str | bytes, file: str, wanted: Wanted = AUTO) -> compile.Machine:
+    """The scene on the graph, for whoever has a check of its own; what is linked is studied.
+
+    Raises:
+        SpecError, UsageError, CheckError: as `of_text`.
+    """
+    model = read(text, file)
+    return of_model(model, wanted).compiled if model.constraints else compile.machine_of(model)
 
 
 def _linked(links: LinkedStudy) -> Study:

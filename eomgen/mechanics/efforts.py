@@ -78,13 +78,14 @@ def _moment(kinematics: Kinematics[S], moment: Moment) -> Effort[S]:
         if moment.source is not None:
             spin = subtract(spin, kinematics.angular_velocity(moment.source))
         return Effort(moment.name, "moment", vector, spin)
-    spin = _world_spin(kinematics, moment.on)
+    spin = world_spin(kinematics, moment.on)
     if moment.source is not None:
-        spin = subtract(spin, _world_spin(kinematics, moment.source))
+        spin = subtract(spin, world_spin(kinematics, moment.source))
     return Effort(moment.name, "moment", kinematics.to_world(vector, moment.axes), spin)
 
 
-def _world_spin(kinematics: Kinematics[S], name: str) -> Vector[S]:
+def world_spin(kinematics: Kinematics[S], name: str) -> Vector[S]:
+    """The angular velocity of a body in solid space, in world axes."""
     spin = kinematics.angular_velocity(name)
     is_rod = kinematics.bodies[name].frame.along is not None
     return spin if is_rod else transform(kinematics.axes(name), spin)
