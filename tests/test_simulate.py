@@ -18,7 +18,7 @@ from commandline import eomgen
 from scenes import LINKED, SHIPPED, study_of, text_of
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
-from tools import tool
+from tools import library, tool
 
 from eomgen.numerics import cache
 from eomgen.simulate_method import rounded_down
@@ -69,7 +69,7 @@ MARKED = [pytest.param(m, marks=() if m in QUICK else pytest.mark.slow) for m in
 def test_every_method_comes_to_the_same_end(call, method):
     """Skew axes, full inertia, a damper and two inputs; the reference is SciPy on the Python."""
     if method == "cvode":
-        pytest.importorskip("sksundae")
+        library("sksundae")
     inputs = ("--input", "tau_1=0.5", "--input", "tau_2=-0.25")
     words = ("--t-end", 1, "--method", method, *METHODS[method], *inputs)
     said = simulate(call, "skew_arm", *words, "--output-step", 0.1, "--energy-tolerance", 0.1)
@@ -228,8 +228,8 @@ def test_a_plot_has_a_panel_for_each_unit(call):
 
 
 def test_an_animation_is_one_file_with_the_places_of_everything(call):
-    simulate(call, "skew_arm", "--input", "tau_1=0", "--input", "tau_2=0", "--t-end", 1, "--animate",
-             "a.html")  # fmt: skip
+    inputs = ("--input", "tau_1=0", "--input", "tau_2=0")
+    simulate(call, "skew_arm", *inputs, "--t-end", 1, "--animate", "a.html")
     text = Path("a.html").read_text()
     assert not re.search(r"(src|href)=", text)
     data = json.loads(re.search(r"^const data = (.*);$", text, re.M)[1])
