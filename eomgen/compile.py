@@ -93,11 +93,8 @@ class Machine:
             return self.linked.accelerations, self.linked.pivots
         matrix, bias = self.equations.mass_matrix, self.equations.bias
         right = [q - h for q, h in zip(self.equations.generalized_forces, bias, strict=True)]
-        if len(right) > LARGEST_UNROLLED:
-            (solution,) = ldl.solve_in_loop(matrix, right)
-            return tuple(solution), self.pivots
-        (solution,), pivots = ldl.solve(matrix, right)
-        return tuple(solution), self.pivots + pivots
+        solution, pivots = solved(matrix, right)
+        return solution, self.pivots + pivots
 
     @cached_property
     def rates(self) -> tuple[Node, ...]:
@@ -134,6 +131,17 @@ class Machine:
         pairs = zip(self.model.coordinates, self.accelerations, strict=True)
         own = zip(self.model.speeds, self.solution[0], strict=bool(self.model.speeds))
         return {s.rate: a for s, a in own} | {c.acceleration: a for c, a in pairs}
+
+
+def solved(
+    matrix: Sequence[Sequence[Node]], right: Sequence[Node]
+) -> tuple[tuple[Node, ...], ldl.Pivots]:
+    """x of A x = b, unrolled up to `LARGEST_UNROLLED`, else in a loop that checks its pivots."""
+    if len(right) > LARGEST_UNROLLED:
+        (solution,) = ldl.solve_in_loop(matrix, right)
+        return tuple(solution), ()
+    (solution,), pivots = ldl.solve(matrix, right)
+    return tuple(solution), pivots
 
 
 def machine_of(model: Model) -> Machine:
