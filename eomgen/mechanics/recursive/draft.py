@@ -60,13 +60,6 @@ class Draft:
         total = body if before is None else before + body
         self.places[place] = replace(self.places[place], body=total)
 
-    def coefficient(self, formula: object) -> Node:
-        """A weight of a point, which must not move."""
-        value = self.kinematics.algebra.of(formula)
-        if self.clock.moved_by(value):
-            raise NoTree("a point counts with a weight that moves")
-        return value
-
 
 def columns_of(parts: Iterable[Moving]) -> tuple[int, ...]:
     """The numbers of all coordinates of some motions, by declaration."""

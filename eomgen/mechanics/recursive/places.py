@@ -13,9 +13,8 @@ from eomgen.model import Body, Model, Place
 
 @dataclass(frozen=True)
 class Hung:
-    """coefficient * point (None: nothing) + components in the axes of `on` (None: the world's)."""
+    """A point (None: nothing) + components in the axes of `on` (None: the world's)."""
 
-    coefficient: sp.Expr
     point: str | None
     components: tuple[sp.Expr, ...]
     on: str | None
@@ -38,23 +37,21 @@ class Words:
         if place.on is not None:
             if place.points:
                 raise NoTree("a place has the axes of a body and counts from another point")
-            return Hung(sp.S.One, None, place.components, place.on)
+            return Hung(None, place.components, place.on)
         weights: dict[str, sp.Expr] = {}
         components = _gathered(weights, place, sp.S.One, (sp.S.Zero,) * len(place.components))
-        while len(weights) > 1:
+        # a weight that is not one would weigh the ground's fall too
+        while weights and list(weights.values()) != [1]:
             components = self._spelled_out(weights, components)
-        if not weights:
-            return Hung(sp.S.One, None, components, None)
-        ((point, coefficient),) = weights.items()
-        return Hung(coefficient, point, components, None)
+        return Hung(next(iter(weights), None), components, None)
 
     def _spelled_out(
         self, weights: dict[str, sp.Expr], components: tuple[sp.Expr, ...]
     ) -> tuple[sp.Expr, ...]:
-        """The last declared of several points replaced by what it stands for."""
+        """The last declared of the points replaced by what it stands for."""
         plain = [name for name in weights if self.definition(name) is not None]
         if not plain:
-            raise NoTree(f"a place hangs on {' and '.join(weights)} at once")
+            raise NoTree(f"a place counts from {' and '.join(weights)} with weights")
         last = max(plain, key=self.rank.__getitem__)
         definition = self.definition(last)
         assert definition is not None

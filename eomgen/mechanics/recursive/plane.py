@@ -44,7 +44,7 @@ def _base(draft: Draft, hung: Hung) -> int:
 def _is_here(draft: Draft, hung: Hung, offset: Moving) -> bool:
     """Whether there is no offset at all."""
     at_base = all(v is draft.zero for v in offset.values)
-    return at_base and hung.coefficient == 1 and (hung.on or hung.point) is not None
+    return at_base and (hung.on or hung.point) is not None
 
 
 def frame(draft: Draft, name: str) -> int:
@@ -73,6 +73,7 @@ def _put(
 ) -> int:
     """A new place at an offset from its base, with an angle of its own where it turns."""
     base, hung = at
+    anchor = offset.values if offset.is_still else None
     if hung.on is not None:
         offset = _turned(draft.kinematics.axes(hung.on), offset)
     spin = draft.spin(base) if hung.on is not None else ()
@@ -86,7 +87,7 @@ def _put(
         own = spin[0] + angle.rate[0] if spin else angle.rate[0]
         kind = PlanarFrame((own,), draft.kinematics.axes(name))
     columns = {c: _column(parts, c, draft.zero) for c in columns_of(parts)}
-    return draft.put(Place(name, kind, base, (Flat(rows, drift),), columns))
+    return draft.put(Place(name, kind, base, (Flat(rows, drift, anchor),), columns))
 
 
 def _column(parts: Sequence[Moving], coordinate: int, zero: Node) -> Vector[Node]:
@@ -120,13 +121,12 @@ def _rows(draft: Draft, at: tuple[int, Hung], arm: Vector[Node], turns: bool) ->
     """X: the velocity of the base, w J r where the arm turns with it, and w."""
     base, hung = at
     zero, one = draft.zero, draft.kinematics.algebra.number(1)
-    factor = draft.coefficient(hung.coefficient)
     dimensions = draft.kinematics.dimensions
     has_spin = bool(draft.spin(base))
     swept = (-arm[1], arm[0]) if arm else (zero,) * dimensions
     rows = []
     for i in range(dimensions):
-        linear = tuple(factor if i == j else zero for j in range(dimensions))
+        linear = tuple(one if i == j else zero for j in range(dimensions))
         rows.append((swept[i], *linear) if has_spin else linear)
     if turns:
         spin_row = (one if arm else zero,) if has_spin else ()

@@ -26,9 +26,24 @@ class _Path:
     """Steps from a base, with the spin and the columns at their end."""
 
     draft: Draft
+    name: str
+    base: int
     spin: Vector[Node]
     steps: list[Step] = field(default_factory=list)
     columns: dict[int, Vector[Node]] = field(default_factory=dict)
+
+    def end(self) -> int:
+        """The place where the steps so far lead."""
+        if not self.steps:
+            return self.base
+        kind = SpatialFrame(self.spin)
+        place = Place(self.name, kind, self.base, tuple(self.steps), self.columns)
+        return self.draft.put(place)
+
+    def cut(self, part: Moving) -> None:
+        """End a place where another motion begins: what shares a coordinate is joined later."""
+        if part.columns and self.columns:
+            self.base, self.steps, self.columns = self.end(), [], {}
 
     def go(self, step: Step, own: dict[int, Vector[Node]]) -> None:
         """One step more; `own` are its columns."""
@@ -51,13 +66,15 @@ def _point(draft: Draft, name: str) -> int:
     offset = draft.clock.moving(hung.components)
     if hung.on is not None:
         return _on_frame(draft, name, frame(draft, hung.on), offset)
+    return _world_point(draft, name, hung, offset)
+
+
+def _world_point(draft: Draft, name: str, hung: Hung, offset: Moving) -> int:
+    """A place at an offset in world axes."""
     base = GROUND if hung.point is None else point(draft, hung.point)
-    if hung.point is not None and hung.coefficient == 1 and _is_nothing(draft, offset):
+    if hung.point is not None and _is_nothing(draft, offset):
         return base
-    factor = draft.coefficient(hung.coefficient)
-    rows = _to_world(draft, base)
-    rows = tuple(scale(factor, row) for row in rows)
-    step = Flat(rows, offset.drift)
+    step = Flat(_to_world(draft, base), offset.drift)
     return draft.put(Place(name, Point(3), base, (step,), dict(offset.columns)))
 
 
@@ -79,10 +96,9 @@ def _on_frame(draft: Draft, name: str, base: int, offset: Moving) -> int:
     """A place in the axes of its base."""
     if _is_nothing(draft, offset):
         return base
-    path = _Path(draft, draft.spin(base))
+    path = _Path(draft, name, base, draft.spin(base))
     _shift(path, offset)
-    kind = SpatialFrame(path.spin)
-    place = draft.put(Place(name, kind, base, tuple(path.steps), path.columns))
+    place = path.end()
     if base in draft.turned_as:
         draft.turned_as[place] = draft.turned_as[base]
     return place
@@ -101,37 +117,33 @@ def _frame(draft: Draft, name: str) -> int:
     if body.frame.along:
         raise NoTree(f"the rod {name} has no axes of its own in space")
     hung = draft.words.hung(body.frame.origin)
-    base, path = _start(draft, hung)
     offset = draft.clock.moving(hung.components)
-    if not _is_nothing(draft, offset):
-        _shift(path, offset)
+    path = _start(draft, name, hung, offset)
     for turn in body.frame.turns:
         _turn(path, turn)
-    if not path.steps:
-        return base
-    kind = SpatialFrame(path.spin)
-    return draft.put(Place(name, kind, base, tuple(path.steps), path.columns))
+    return path.end()
 
 
-def _start(draft: Draft, hung: Hung) -> tuple[int, _Path]:
-    """The base of a frame; a frame beside a point starts in world axes at that point."""
-    if hung.coefficient != 1:
-        raise NoTree("a frame counts from a point with a weight")
+def _start(draft: Draft, name: str, hung: Hung, offset: Moving) -> _Path:
+    """The way to the origin of a frame; where that moves in world axes it is a point first."""
     if hung.on is not None:
         base = frame(draft, hung.on)
-        return base, _Path(draft, draft.spin(base))
-    path = _Path(draft, (draft.zero,) * 3)
-    if hung.point is None:
-        return GROUND, path
-    base = point(draft, hung.point)
-    rows = _to_world(draft, base)
+        path = _Path(draft, name, base, draft.spin(base))
+        if not _is_nothing(draft, offset):
+            _shift(path, offset)
+        return path
+    if hung.point is None and offset.is_still:
+        return _Path(draft, name, GROUND, draft.spin(GROUND))
+    path = _Path(draft, name, _world_point(draft, name, hung, offset), (draft.zero,) * 3)
+    rows = _to_world(draft, path.base)
     still = (draft.zero,) * len(rows[0])
     path.steps.append(Flat((still,) * 3 + rows, (draft.zero,) * 6))
-    return base, path
+    return path
 
 
 def _shift(path: _Path, offset: Moving) -> None:
     zero = path.draft.zero
+    path.cut(offset)
     step = Shift(path.spin, offset.values, offset.rate, offset.drift)
     path.go(step, {c: (zero, zero, zero, *column) for c, column in offset.columns.items()})
 
@@ -140,6 +152,7 @@ def _turn(path: _Path, turn: Turned) -> None:
     draft = path.draft
     algebra, angle = draft.kinematics.algebra, draft.clock.moving([turn.angle])
     axis = rotation.unit(algebra, turn.axis)
+    path.cut(angle)
     (value,), (rate,), (drift,) = angle.values, angle.rate, angle.drift
     step: Step
     number = _aligned(axis, algebra.number(1))

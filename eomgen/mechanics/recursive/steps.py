@@ -55,6 +55,7 @@ class Flat:
 
     matrix: Matrix[Node]
     drift: Vector[Node]
+    anchor: Vector[Node] | None = None  # where a frame's origin is fixed, in the base's axes
 
     def motion(self, twist: Vector[Node]) -> Vector[Node]:
         """X t."""
