@@ -25,6 +25,10 @@ from eomgen.mechanics import (
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.equations import Contribution, Equations
 from eomgen.mechanics.kinematics import Kinematics
+from eomgen.mechanics.recursive import build, engine, loads, recursion
+from eomgen.mechanics.recursive.engine import Engine
+from eomgen.mechanics.recursive.lumping import lumped
+from eomgen.mechanics.recursive.records import NoTree, Tree
 from eomgen.mechanics.vectors import dot
 from eomgen.model import TIME as TIME_SYMBOL
 from eomgen.model import Coordinate, Description, Model, Prescribed, Speed
@@ -55,9 +59,31 @@ class Machine:
         return tuple(node for node in dict.fromkeys(bound) if isinstance(node.datum, Read))
 
     @cached_property
+    def tree(self) -> Tree | NoTree:
+        """The tree of joints, or why there is none."""
+        try:
+            return build.tree_of(self.kinematics)
+        except NoTree as reason:
+            return reason
+
+    @cached_property
+    def engine(self) -> Engine | None:
+        """The way to the accelerations of a tree without links; None: by the mass matrix."""
+        if isinstance(self.tree, NoTree) or self.kept:
+            return None
+        return engine.choose(self.kinematics, self.tree)
+
+    @cached_property
     def equations(self) -> Equations[Node]:
-        """M, h, Q by d'Alembert's principle."""
-        return virtual_work.derive(self.kinematics)
+        """M, h, Q: by recursion over a tree, by d'Alembert's principle where there is none."""
+        if isinstance(self.tree, NoTree):
+            return virtual_work.derive(self.kinematics)
+        tree = lumped(self.tree) if self.engine is None else self.engine.tree
+        return Equations(
+            recursion.mass_matrix(tree),
+            recursion.inverse_dynamics(tree, falling=False),
+            loads.generalized_forces(self.kinematics, tree),
+        )
 
     @cached_property
     def energy(self) -> tuple[Node, Node]:
@@ -87,9 +113,11 @@ class Machine:
 
     @cached_property
     def solution(self) -> tuple[tuple[Node, ...], ldl.Pivots]:
-        """u' = M^-1 (Q - h), unrolled up to `LARGEST_UNROLLED`; with multipliers of kept rows."""
+        """u' by the engine of a tree, or M^-1 (Q - h), or with multipliers of kept rows."""
         if self.kept:
             return self.linked.accelerations, self.linked.pivots
+        if self.engine is not None:
+            return self.engine.accelerations, self.pivots + self.engine.pivots
         matrix, bias = self.equations.mass_matrix, self.equations.bias
         right = [q - h for q, h in zip(self.equations.generalized_forces, bias, strict=True)]
         if len(right) > LARGEST_UNROLLED:

@@ -42,8 +42,8 @@ def tree_of(kinematics: Kinematics[Node]) -> Tree:
         _load(draft, space, body)
     names = [c.name for c in kinematics.model.coordinates]
     gravity = kinematics.vector(kinematics.model.gravity)
-    places = settled(draft.places)
-    return Tree(tuple(places), joints(places, names), gravity)
+    places, frames = settled(draft)
+    return Tree(tuple(places), joints(places, names), gravity, frames)
 
 
 def _refuse(kinematics: Kinematics[Node]) -> None:

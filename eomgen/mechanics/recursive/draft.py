@@ -66,16 +66,19 @@ def columns_of(parts: Iterable[Moving]) -> tuple[int, ...]:
     return tuple(sorted({c for part in parts for c in part.columns}))
 
 
-def settled(places: Sequence[Place]) -> list[Place]:
-    """Places such that those which share a coordinate have one base; none that carries nothing.
+def settled(draft: Draft) -> tuple[list[Place], dict[str, int]]:
+    """Places of which those that share a coordinate have one base, and the frames among them.
 
     Where bases differ the place that is deepest goes by its base's base: its twist is X t + S q'
-    with the coordinates of both.
+    with the coordinates of both. What carries nothing is left out.
     """
-    found = list(places)
+    found = list(draft.places)
     while (deepest := _apart(found)) is not None:
         found[deepest] = _through(found[deepest], found[found[deepest].base])
-    return _pruned(found)
+    kept = _kept(found)
+    number = {old: new for new, old in enumerate(kept)}
+    places = [replace(found[i], base=number[found[i].base]) for i in kept]
+    return places, {n: number[i] for n, i in draft.frames.items() if i in number}
 
 
 def _apart(places: list[Place]) -> int | None:
@@ -95,15 +98,13 @@ def _through(place: Place, base: Place) -> Place:
     return replace(place, base=base.base, steps=base.steps + place.steps, columns=columns)
 
 
-def _pruned(places: list[Place]) -> list[Place]:
-    """Without places that carry neither a body nor another place."""
+def _kept(places: list[Place]) -> list[int]:
+    """The numbers of places that carry a body or another place."""
     used = {GROUND}
     for i in reversed(range(len(places))):
         if i in used or places[i].body is not None:
             used |= {i, places[i].base}
-    kept = sorted(used)
-    number = {old: new for new, old in enumerate(kept)}
-    return [replace(places[i], base=number[places[i].base]) for i in kept]
+    return sorted(used)
 
 
 def _depths(places: Sequence[Place]) -> list[int]:

@@ -6,12 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from eomgen.algebra import cost, ldl
-from eomgen.algebra.derive import pullback
 from eomgen.algebra.graph import Node
-from eomgen.mechanics import efforts
-from eomgen.mechanics.efforts import Effort
 from eomgen.mechanics.kinematics import Kinematics
-from eomgen.mechanics.recursive import articulated, recursion
+from eomgen.mechanics.recursive import articulated, loads, recursion
 from eomgen.mechanics.recursive.lumping import lumped
 from eomgen.mechanics.recursive.records import Tree
 
@@ -72,14 +69,13 @@ def choose(kinematics: Kinematics[Node], tree: Tree) -> Engine:
         SingularMassMatrix: a motion has no inertia whatever the state.
     """
     prepared = _prepared(kinematics)
-    applied = loads(kinematics)
+    applied = loads.of(kinematics, tree)
     variants = [(True, lumped(tree))]
     if len(tree.order) <= LARGEST_COMPARED:
         variants.append((False, tree))
     best: Engine | None = None
     for is_lumped, variant in variants:
-        bias = recursion.inverse_dynamics(variant, falling=True)
-        right = [q - h for q, h in zip(applied, bias, strict=True)]
+        right = [-r for r in recursion.inverse_dynamics(variant, falling=True, loads=applied)]
         for method, solver in METHODS.items():
             if method != "articulated bodies" and best and _factorisation(tree) > best.operations:
                 continue
@@ -111,32 +107,3 @@ def _factorisation(tree: Tree) -> int:
         for number in joint.places:
             above[number] = depth
     return total
-
-
-def loads(kinematics: Kinematics[Node]) -> list[Node]:
-    """Q of everything applied but the weights."""
-    return generalized(kinematics, [e for e in _applied(kinematics) if e.kind != "gravity"])
-
-
-def generalized_forces(kinematics: Kinematics[Node]) -> tuple[Node, ...]:
-    """Q of everything applied."""
-    return tuple(generalized(kinematics, _applied(kinematics)))
-
-
-def _applied(kinematics: Kinematics[Node]) -> list[Effort[Node]]:
-    return [
-        *efforts.conservative(kinematics),
-        *efforts.dissipative(kinematics),
-        *efforts.nonconservative(kinematics),
-    ]
-
-
-def generalized(kinematics: Kinematics[Node], applied: Sequence[Effort[Node]]) -> list[Node]:
-    """Sum of force . d velocity / d q' for every coordinate: the velocities swept back once."""
-    rates = [kinematics.flow.rates[c.symbol] for c in kinematics.model.coordinates]
-    weighted = [
-        (velocity, force)
-        for effort in applied
-        for velocity, force in zip(effort.velocity, effort.force, strict=True)
-    ]
-    return pullback(weighted, rates) if weighted else [kinematics.algebra.number(0)] * len(rates)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from eomgen.algebra.graph import Node
 from eomgen.mechanics.recursive import rigid
@@ -152,6 +152,7 @@ class Tree:
     places: tuple[Place, ...]
     joints: tuple[Joint, ...]
     gravity: Vector[Node]  # world axes, [m/s^2]
+    frames: Mapping[str, int] = field(default_factory=dict)  # body -> the place of its axes
 
     @property
     def order(self) -> tuple[int, ...]:

@@ -6,7 +6,8 @@ composite-rigid-body algorithm (ch. 6), each place of a joint with its own S.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from eomgen.algebra.graph import Node
 from eomgen.mechanics.recursive.records import GROUND, Joint, Place, Point, Tree
@@ -44,19 +45,42 @@ def _ground(tree: Tree, falling: bool) -> Vector[Node]:
     return (*(zero,) * spins, *linear)
 
 
+@dataclass(frozen=True)
+class Loads:
+    """Everything applied but the weights: on places as wrenches, on coordinates as forces."""
+
+    wrenches: Mapping[int, Vector[Node]]
+    forces: tuple[Node, ...]
+
+
 def inverse_dynamics(
-    tree: Tree, falling: bool, second: Sequence[Node] | None = None
+    tree: Tree, falling: bool, second: Sequence[Node] | None = None, loads: Loads | None = None
 ) -> tuple[Node, ...]:
-    """The forces M q'' + h that a motion takes, less the work of the weights where `falling`.
+    """The forces M q'' + h that a motion takes, less weights (where `falling`) and `loads`.
 
     Rows are those of the coordinates; with `second` = None it is the bias h.
     """
-    found = accelerations(tree, falling, second)
-    zero = tree.gravity[0].graph.zero
-    wrenches: list[Vector[Node] | None] = [
+    wrenches = inertial(tree, accelerations(tree, falling, second))
+    if loads is None:
+        return gathered(tree, wrenches)
+    for number, applied in loads.wrenches.items():
+        wrenches[number] = _sum(wrenches[number], tuple(-w for w in applied))
+    rows = gathered(tree, wrenches)
+    return tuple(row - force for row, force in zip(rows, loads.forces, strict=True))
+
+
+def inertial(tree: Tree, found: Sequence[Vector[Node]]) -> list[Vector[Node] | None]:
+    """The wrench that moves the body of every place."""
+    return [
         None if place.body is None else place.kind.wrench(place.body, found[i])
         for i, place in enumerate(tree.places)
     ]
+
+
+def gathered(tree: Tree, applied: Sequence[Vector[Node] | None]) -> tuple[Node, ...]:
+    """The force of every coordinate, from wrenches on places: S' w, and X' w for the base."""
+    wrenches = list(applied)
+    zero = tree.gravity[0].graph.zero
     result = [zero] * len(tree.order)
     for joint in reversed(tree.joints):
         for number in joint.places:
