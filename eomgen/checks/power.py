@@ -15,6 +15,7 @@ from typing import Any
 import sympy as sp
 
 from eomgen.algebra.arithmetic import mpmath_arithmetic
+from eomgen.algebra.derive import direction, gradient
 from eomgen.algebra.graph import Node
 from eomgen.checks.agreement import DECIDING_STATES, DIGITS, EXACT_TOLERANCE, FLOAT_TOLERANCE
 from eomgen.checks.evaluation import Bench, benches, over, singly
@@ -54,19 +55,21 @@ def imbalance(terms: Sequence[Node], at: Bench) -> Any:
 
 
 def balance_terms(machine: Machine) -> list[Node]:
-    """Terms that add up to zero on every motion."""
+    """Terms that add up to zero on every motion; each gradient is one reverse sweep."""
     kinetic, potential = machine.energy
-    algebra, one = machine.kinematics.algebra, machine.kinematics.algebra.number(1)
-    unknown = speeds.symbols(machine.model)
+    algebra = machine.kinematics.algebra
     relative = relative_speeds(machine)
-    momenta = [algebra.along(kinetic, {symbol: one}) for symbol in unknown]
+    momenta = gradient(kinetic, [algebra.of(s) for s in speeds.symbols(machine.model)])
     energy = dot(momenta, relative) - kinetic
     motion = motion_of(machine)
-    terms = [algebra.along(energy, {s: r}) for s, r in motion.items()]
-    terms += [algebra.along(potential, {s: r}) for s, r in motion.items() if s != TIME]
+    leaves, rates = [algebra.of(s) for s in motion], motion.values()
+    terms = [slope * rate for slope, rate in zip(gradient(energy, leaves), rates, strict=True)]
+    moving = [s for s in motion if s != TIME]
+    slopes = gradient(potential, [algebra.of(s) for s in moving])
+    terms += [slope * motion[s] for slope, s in zip(slopes, moving, strict=True)]
     terms += [-power for power in _powers(machine, relative)]
     terms += [-power for power in _constraint_powers(machine)]
-    terms.append(algebra.along(kinetic, {TIME: one}))
+    terms.append(algebra.along(kinetic, {TIME: algebra.number(1)}))
     terms += [p * e for p, e in zip(momenta, _explicit(machine), strict=True)]
     return terms
 
@@ -92,9 +95,11 @@ def _powers(machine: Machine, relative: Sequence[Node]) -> Iterable[Node]:
         *efforts.dissipative(machine.kinematics),
         *efforts.nonconservative(machine.kinematics),
     ]
+    algebra = machine.kinematics.algebra
+    leaves = [algebra.of(s) for s in speeds.symbols(machine.model)]
+    along = direction(algebra.number(0).graph, dict(zip(leaves, relative, strict=True)))
     for effort in everything:
-        for symbol, speed in zip(speeds.symbols(machine.model), relative, strict=True):
-            yield efforts.generalized_force(machine.kinematics, effort, symbol) * speed
+        yield dot(effort.force, [along(v) for v in effort.velocity])
 
 
 def _constraint_powers(machine: Machine) -> list[Node]:

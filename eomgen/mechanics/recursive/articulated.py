@@ -99,9 +99,7 @@ def _eliminated(
         ldl.check_pivot(pivots, joint.coordinates[i], rows[size + i][-1], scale_of)
         reciprocals.insert(0, 1 / rows[size + i][-1])
         ldl.eliminate(rows, size + i, reciprocals[0])
-    rest = tuple(
-        tuple(rows[max(i, j)][min(i, j)] for j in range(size)) for i in range(size)
-    )
+    rest = tuple(tuple(rows[max(i, j)][min(i, j)] for j in range(size)) for i in range(size))
     lower = tuple(tuple(row[:-1]) for row in rows[size:])
     return Elimination(joint, single, size, lower, tuple(reciprocals)), rest
 
@@ -207,9 +205,7 @@ def _lift(
     forces[place.base] = moved if before is None else add(before, moved)
 
 
-def _forces(
-    tree: Tree, e: Elimination, forces: list[Vector[Node] | None], y: list[Node]
-) -> None:
+def _forces(tree: Tree, e: Elimination, forces: list[Vector[Node] | None], y: list[Node]) -> None:
     """u = y - S' p, and p + L' u for the base."""
     zero = tree.gravity[0].graph.zero
     for number in e.joint.places:

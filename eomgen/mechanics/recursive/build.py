@@ -113,7 +113,11 @@ def _load_rod(draft: Draft, body: Body, mass: Node, centre: int) -> None:
     if draft.clock.moved_by(second):
         raise NoTree(f"the rod {body.name} changes its length")
     columns = {c: _spun(along.values, column, square) for c, column in along.columns.items()}
-    size = len(next(iter(columns.values()))) if columns else len(_spun(along.values, along.rate, square))
+    size = (
+        len(next(iter(columns.values())))
+        if columns
+        else len(_spun(along.values, along.rate, square))
+    )
     base = draft.places[centre].base if draft.places[centre].columns else GROUND
     still = (draft.zero,) * draft.kind(base).size
     step = Flat((still,) * size, _spin_drift(draft, along, square, size))

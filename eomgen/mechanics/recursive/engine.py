@@ -36,17 +36,13 @@ class Engine:
 Solver = Callable[[Tree, Sequence[Node]], tuple[tuple[Node, ...], ldl.Pivots]]
 
 
-def by_articulated_bodies(
-    tree: Tree, right: Sequence[Node]
-) -> tuple[tuple[Node, ...], ldl.Pivots]:
+def by_articulated_bodies(tree: Tree, right: Sequence[Node]) -> tuple[tuple[Node, ...], ldl.Pivots]:
     """M^-1 y without M."""
     found = articulated.factor(tree)
     return articulated.solve(found, right), found.pivots
 
 
-def by_composite_inertias(
-    tree: Tree, right: Sequence[Node]
-) -> tuple[tuple[Node, ...], ldl.Pivots]:
+def by_composite_inertias(tree: Tree, right: Sequence[Node]) -> tuple[tuple[Node, ...], ldl.Pivots]:
     """M^-1 y by L' D L of M, from the leaves to the root: no fill."""
     matrix = recursion.mass_matrix(tree)
     order = tree.order

@@ -87,9 +87,9 @@ class Clock:
     def motion(self, values: Vector[Node]) -> Moving:
         """The motion of values."""
         movers = {m[0]: m for v in values for m in self.moved_by(v)}
-        chosen = [m for m in self.movers if m[0] in movers] if len(movers) > 1 else [
-            *movers.values()
-        ]
+        chosen = (
+            [m for m in self.movers if m[0] in movers] if len(movers) > 1 else [*movers.values()]
+        )
         zero = (values[0].graph.zero,) * len(values)
         rate, drift, first = zero, zero, {}
         for number, symbol, _, speed in chosen:

@@ -68,7 +68,9 @@ def _is_on_tree(tree: Tree, moment: Moment) -> bool:
     """Whether everything that feels a moment has axes of its own in the tree."""
     names = [n for n in (moment.on, moment.source) if n is not None]
     kinds = [tree.places[tree.frames[n]].kind for n in names if n in tree.frames]
-    return len(kinds) == len(names) and all(isinstance(k, PlanarFrame | SpatialFrame) for k in kinds)
+    return len(kinds) == len(names) and all(
+        isinstance(k, PlanarFrame | SpatialFrame) for k in kinds
+    )
 
 
 Found = tuple[dict[int, Vector[Node]], list[Node]]  # wrenches and forces, to be added to
@@ -107,9 +109,7 @@ def _path(tree: Tree, last: int, first: int) -> Iterator[Place]:
     return iter(on_way if last == first else ())
 
 
-def _wrench(
-    kinematics: Kinematics[Node], tree: Tree, moment: Moment, name: str
-) -> Vector[Node]:
+def _wrench(kinematics: Kinematics[Node], tree: Tree, moment: Moment, name: str) -> Vector[Node]:
     """The moment in the axes of a body's place."""
     vector, zero = kinematics.vector(moment.components), kinematics.algebra.number(0)
     if kinematics.dimensions == 3 and moment.axes != name:
@@ -117,5 +117,3 @@ def _wrench(
         vector = transform(transpose(kinematics.axes(name)), world)
     size = tree.places[tree.frames[name]].kind.size
     return (*vector, *(zero,) * (size - len(vector)))
-
-

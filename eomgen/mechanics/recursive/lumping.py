@@ -111,13 +111,9 @@ def _about_axis(k: int, body: Rigid) -> Split:
     zero, (i, j) = body.mass.graph.zero, PAIRS[k]
     across = body.second[j][j]
     first = tuple(h if axis == k else zero for axis, h in enumerate(body.first))
-    second = tuple(
-        tuple(across if a == b != k else zero for b in range(3)) for a in range(3)
-    )
+    second = tuple(tuple(across if a == b != k else zero for b in range(3)) for a in range(3))
     rows = [list(row) for row in body.second]
     rows[i][i], rows[j][j] = rows[i][i] - across, zero
     rest = tuple(zero if axis == k else h for axis, h in enumerate(body.first))
     kept = Rigid(zero, rest, tuple(tuple(row) for row in rows))
     return Rigid(body.mass, first, second), kept
-
-

@@ -148,9 +148,7 @@ def momentum(place: Place, inertia: Inertia, twist: Vector[Node]) -> Vector[Node
     return transform(as_matrix(place, inertia), twist)
 
 
-def energy_product(
-    place: Place, inertia: Inertia, left: Vector[Node], right: Vector[Node]
-) -> Node:
+def energy_product(place: Place, inertia: Inertia, left: Vector[Node], right: Vector[Node]) -> Node:
     """T_left' I t_right; a mass times the product where the place is a point."""
     if isinstance(place.kind, Point) and isinstance(inertia, Rigid):
         return inertia.mass * dot(left, right)

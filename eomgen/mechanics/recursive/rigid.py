@@ -140,5 +140,3 @@ def particle(mass: Node, dimensions: int) -> Rigid:
 def nothing(zero: Node, dimensions: int) -> Rigid:
     """No inertia."""
     return particle(zero, dimensions)
-
-
