@@ -271,6 +271,7 @@ def program(m: Machine) -> Program:
         ),
         outputs=tuple(_variable(o.name, o.description) for o in model.outputs),
         functions=tuple(FUNCTIONS[name](m) for name in wanted(model)),
+        engine="" if m.engine is None else m.engine.said,
     )
 
 
