@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from eomgen import compile
+from eomgen.algebra.normal import TooLarge
 from eomgen.checks import (
     agreement,
     dimensions,
@@ -22,7 +23,6 @@ from eomgen.checks import (
     samples,
 )
 from eomgen.mechanics import lagrange, speeds
-from eomgen.algebra.normal import TooLarge
 from eomgen.mechanics.equations import Derivation
 from eomgen.model import Model
 from eomgen.program import Program

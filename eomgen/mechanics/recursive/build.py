@@ -24,7 +24,7 @@ from eomgen.mechanics.recursive.records import (
 from eomgen.mechanics.recursive.rigid import Rigid
 from eomgen.mechanics.recursive.steps import Flat
 from eomgen.mechanics.vectors import Vector, add, cross, dot, scale
-from eomgen.model import Body, Place as Where
+from eomgen.model import Body
 from eomgen.program import Read
 
 
@@ -89,7 +89,7 @@ def _is_plain(draft: Draft, body: Body) -> bool:
     """Whether a particle is at a point that needs no axes of the body."""
     if body.com.on != body.name:
         return True
-    return draft.words.is_at_origin(body.name) and not draft.words.carries(body.name)
+    return draft.words.is_at_origin(body.name) and body.name not in draft.words.carriers
 
 
 def _tensor(draft: Draft, body: Body) -> tuple[tuple[Node, ...], ...]:

@@ -64,7 +64,7 @@ def choose(kinematics: Kinematics[Node], tree: Tree) -> Engine:
     Raises:
         SingularMassMatrix: a motion has no inertia whatever the state.
     """
-    prepared = _prepared(kinematics)
+    prepared, factorisation = _prepared(kinematics), _factorisation(tree)
     applied = loads.of(kinematics, tree)
     variants = [(True, lumped(tree))]
     if len(tree.order) <= LARGEST_COMPARED:
@@ -73,7 +73,7 @@ def choose(kinematics: Kinematics[Node], tree: Tree) -> Engine:
     for is_lumped, variant in variants:
         right = [-r for r in recursion.inverse_dynamics(variant, falling=True, loads=applied)]
         for method, solver in METHODS.items():
-            if method != "articulated bodies" and best and _factorisation(tree) > best.operations:
+            if best and method != best.method and not 0 < factorisation < best.operations:
                 continue
             solution, pivots = solver(variant, right)
             count = cost.operations(solution, prepared)
@@ -92,7 +92,10 @@ def _prepared(kinematics: Kinematics[Node]) -> int:
 
 
 def _factorisation(tree: Tree) -> int:
-    """Operations of L' D L alone: a row for each coordinate above, and the two substitutions."""
+    """Operations of L' D L alone: a row for each coordinate above, and the two substitutions.
+
+    Zero where no joint stands on another: then the methods do not differ.
+    """
     above = [0] * len(tree.places)
     total = 0
     for joint in tree.joints:

@@ -27,6 +27,7 @@ class Words:
     points: Mapping[str, Place]
     bodies: Mapping[str, Body]
     rank: Mapping[str, int]  # order of declaration
+    carriers: frozenset[str]  # bodies in whose axes something is placed
 
     def hung(self, place: Place) -> Hung:
         """What a place hangs on.
@@ -92,11 +93,6 @@ class Words:
         com = self.bodies[name].com
         return com.on == name and all(c.is_zero for c in com.components)
 
-    def carries(self, name: str) -> bool:
-        """Whether something is placed in the axes of a body."""
-        places = [*self.points.values(), *(b.frame.origin for b in self.bodies.values())]
-        return any(place.on == name for place in places)
-
 
 def _gathered(
     weights: dict[str, sp.Expr], place: Place, factor: sp.Expr, start: tuple[sp.Expr, ...]
@@ -113,8 +109,10 @@ def _gathered(
 def words(model: Model) -> Words:
     """The places of a model."""
     names = [p.name for p in model.points] + [b.name for b in model.bodies]
+    places = [*(p.place for p in model.points), *(b.frame.origin for b in model.bodies)]
     return Words(
         {p.name: p.place for p in model.points},
         {b.name: b for b in model.bodies},
         {name: i for i, name in enumerate(names)},
+        frozenset(place.on for place in places if place.on is not None),
     )

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from eomgen.algebra.graph import Node
 from eomgen.mechanics.recursive.records import GROUND, Joint, Place, Point, Tree
 from eomgen.mechanics.recursive.rigid import Rigid, product
-from eomgen.mechanics.recursive.steps import back, forward
+from eomgen.mechanics.recursive.steps import back
 from eomgen.mechanics.vectors import Matrix, Vector, add, dot, scale, transform
 
 
