@@ -10,7 +10,7 @@ after forward dynamics is the identity. All of it takes a time linear in the siz
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any
@@ -142,7 +142,7 @@ def pivots(machine: Machine, engine: Engine, samples: Samples) -> None:
         UsageError: E-MASS.
     """
 
-    def least(at: Bench, _: Mapping[str, Any]) -> Any:
+    def least(at: Bench, _: list[Any]) -> Any:
         values = at.nodes([node for pair in engine.pivots for node in pair])
         shares = [p / s for p, s in zip(values[::2], values[1::2], strict=True)]
         return -_largest_signed(at, [-share for share in shares])

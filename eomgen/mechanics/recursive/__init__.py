@@ -1,1 +1,1 @@
-"""Recursion over the tree of places on the graph: inverse dynamics, mass matrix, articulated bodies."""
+"""Recursion over a tree of places: inverse dynamics, mass matrix, articulated bodies."""

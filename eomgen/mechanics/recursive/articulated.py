@@ -246,7 +246,7 @@ def _twists(
             for entry, value in zip(e.rows[i], felt, strict=True):
                 y[c] = y[c] - entry * value
             felt.append(y[c])
-    for n, value in moved.items():
+    for n, twist in moved.items():
         for c, column in tree.places[n].columns.items():
-            value = add(value, scale(y[c], column))
-        twists[n] = value
+            twist = add(twist, scale(y[c], column))
+        twists[n] = twist

@@ -12,6 +12,7 @@ from eomgen.mechanics.recursive import articulated, loads, recursion
 from eomgen.mechanics.recursive.lumping import lumped
 from eomgen.mechanics.recursive.records import Tree
 
+LARGEST_TRIED = 12  # coordinates; above, a factorisation that must cost more is not built
 LARGEST_COMPARED = 60  # coordinates; a larger tree is lumped without counting the alternative
 
 
@@ -64,7 +65,7 @@ def choose(kinematics: Kinematics[Node], tree: Tree) -> Engine:
     Raises:
         SingularMassMatrix: a motion has no inertia whatever the state.
     """
-    prepared, factorisation = _prepared(kinematics), _factorisation(tree)
+    prepared = _prepared(kinematics)
     applied = loads.of(kinematics, tree)
     variants = [(True, lumped(tree))]
     if len(tree.order) <= LARGEST_COMPARED:
@@ -73,7 +74,7 @@ def choose(kinematics: Kinematics[Node], tree: Tree) -> Engine:
     for is_lumped, variant in variants:
         right = [-r for r in recursion.inverse_dynamics(variant, falling=True, loads=applied)]
         for method, solver in METHODS.items():
-            if best and method != best.method and not 0 < factorisation < best.operations:
+            if best and method != best.method and _is_hopeless(variant, best.operations):
                 continue
             solution, pivots = solver(variant, right)
             count = cost.operations(solution, prepared)
@@ -89,6 +90,11 @@ def _prepared(kinematics: Kinematics[Node]) -> int:
     for p in kinematics.model.parameters:
         bits |= kinematics.algebra.of(p.symbol).leaves
     return bits
+
+
+def _is_hopeless(tree: Tree, operations: int) -> bool:
+    """Whether L' D L of a large mass matrix alone takes more, or no joint stands on another."""
+    return len(tree.order) > LARGEST_TRIED and not 0 < _factorisation(tree) < operations
 
 
 def _factorisation(tree: Tree) -> int:

@@ -58,7 +58,7 @@ def _frame(draft: Draft, name: str) -> int:
     body = draft.words.bodies[name]
     hung = draft.words.hung(body.frame.origin)
     base, offset = _base(draft, hung), draft.clock.moving(hung.components)
-    angle = draft.clock.moving([sp.Add(*(t.angle for t in body.frame.turns))])
+    angle = draft.clock.moving([sp.Add(*(f for t in body.frame.turns for f in t.formulas))])
     turns = bool(draft.spin(base)) and hung.on is not None or not angle.is_still
     if not turns:
         here = _is_here(draft, hung, offset)

@@ -1,4 +1,4 @@
-"""The tree of places: what moves against what, by which coordinates, and what inertia it carries."""
+"""The tree of places: what moves against what, by which coordinates, with what inertia."""
 
 from __future__ import annotations
 

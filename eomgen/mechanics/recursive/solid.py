@@ -120,6 +120,7 @@ def _frame(draft: Draft, name: str) -> int:
     offset = draft.clock.moving(hung.components)
     path = _start(draft, name, hung, offset)
     for turn in body.frame.turns:
+        assert isinstance(turn, Turned)  # a quaternion has speeds of its own
         _turn(path, turn)
     return path.end()
 
