@@ -137,7 +137,7 @@ def recursed(machine: compile.Machine) -> Report:
         agreement=recursion.compare(machine, engine, drawn),
         power=power.balance(machine, drawn),
         claims=expectations.check(machine, drawn),
-        routes="recursion",
+        routes="projection" if machine.model.speeds else "recursion",
         warnings=gimbal.warnings(machine.model),
         identity=recursion.identity(machine, engine, drawn),
     )

@@ -156,7 +156,7 @@ def test_an_arm_in_the_plane_takes_one_sine_and_cosine_a_link():
 @pytest.mark.parametrize(
     ("name", "reason"),
     [
-        ("rigid_body", "its speeds are declared"),
+        ("satellite", "its speeds are declared"),
         ("foucault_pendulum", "a kinetic energy is given as a formula"),
     ],
 )

@@ -4,8 +4,9 @@ Lagrange's equations by differentiating the energies, in reverse sweeps,
 
 d/dt dT/dq' - dT/dq + dV/dq = Q,
 
-against the recursion of Newton and Euler over the tree, for any accelerations q''; and inverse
-after forward dynamics is the identity. All of it takes a time linear in the size of the scene.
+against the recursion of Newton and Euler over the tree, for any accelerations; where speeds are
+no rates of coordinates, d'Alembert's projection against it. And inverse after forward dynamics is
+the identity. But for the projection this takes a time linear in the size of the scene.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from eomgen.checks.evaluation import Bench, benches, over, singly
 from eomgen.checks.samples import Samples
 from eomgen.compile import Machine
 from eomgen.errors import CheckError, UsageError
-from eomgen.mechanics import efforts
+from eomgen.mechanics import efforts, speeds, virtual_work
 from eomgen.mechanics.recursive import loads, recursion
 from eomgen.mechanics.recursive.engine import Engine
 
@@ -40,7 +41,7 @@ PIVOT = 1e-12  # of the size of the inertia that it is a part of
 class Rows:
     """For each coordinate the terms of one derivation and the other's residual at given q''."""
 
-    accelerations: tuple[Node, ...]  # q'', free symbols
+    accelerations: tuple[Node, ...]  # u', free symbols
     terms: tuple[tuple[Node, ...], ...]
     residuals: tuple[Node, ...]
 
@@ -92,25 +93,43 @@ def _held(
 
 def rows_of(machine: Machine, engine: Engine) -> Rows:
     """Both derivations over free accelerations."""
+    graph = machine.kinematics.algebra.number(0).graph
+    second = tuple(graph.symbol(f"{s.name}'") for s in speeds.symbols(machine.model))
+    terms = (projected if machine.model.speeds else lagrangian)(machine, second)
+    applied = loads.of(machine.kinematics, engine.tree)
+    residuals = recursion.inverse_dynamics(engine.tree, True, second, applied)
+    return Rows(second, terms, residuals)
+
+
+def projected(machine: Machine, second: Sequence[Node]) -> tuple[tuple[Node, ...], ...]:
+    """The terms of d'Alembert's equations, for speeds that are no rates."""
+    found = virtual_work.derive(machine.kinematics)
+    rows = zip(found.mass_matrix, found.bias, found.generalized_forces, strict=True)
+    return tuple(
+        (*(m * a for m, a in zip(row, second, strict=True)), bias, -force)
+        for row, bias, force in rows
+    )
+
+
+def lagrangian(machine: Machine, second: Sequence[Node]) -> tuple[tuple[Node, ...], ...]:
+    """The terms of Lagrange's equations."""
     kinematics, model = machine.kinematics, machine.model
     algebra, graph = kinematics.algebra, kinematics.algebra.number(0).graph
     kinetic, potential = machine.energy
     places = [algebra.of(c.symbol) for c in model.coordinates]
     rates = [algebra.of(c.rate) for c in model.coordinates]
-    second = tuple(graph.symbol(f"{c.name}''") for c in model.coordinates)
     flow = {algebra.of(s): r for s, r in kinematics.flow.derivatives.items()}
     moving = direction(graph, flow | dict(zip(rates, second, strict=True)))
     other = [*efforts.dissipative(kinematics), *efforts.nonconservative(kinematics)]
-    terms = zip(
-        map(moving, gradient(kinetic, rates)),
-        (-slope for slope in gradient(kinetic, places)),
-        gradient(potential, places),
-        (-force for force in loads.generalized(kinematics, other)),
-        strict=True,
+    return tuple(
+        zip(
+            map(moving, gradient(kinetic, rates)),
+            (-slope for slope in gradient(kinetic, places)),
+            gradient(potential, places),
+            (-force for force in loads.generalized(kinematics, other)),
+            strict=True,
+        )
     )
-    applied = loads.of(kinematics, engine.tree)
-    residuals = recursion.inverse_dynamics(engine.tree, True, second, applied)
-    return Rows(second, tuple(terms), residuals)
 
 
 def difference(rows: Rows, at: Bench, second: Sequence[Any]) -> Any:

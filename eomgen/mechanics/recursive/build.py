@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import ModuleType
 
 from eomgen.algebra.graph import Node
-from eomgen.mechanics import rotation
+from eomgen.mechanics import motions, rotation, speeds
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.recursive import plane, solid
 from eomgen.mechanics.recursive import rigid as inertia
@@ -29,7 +29,7 @@ from eomgen.program import Read
 
 
 def tree_of(kinematics: Kinematics[Node]) -> Tree:
-    """The tree of a scene whose speeds are the rates of its coordinates.
+    """The tree of a scene whose speeds are rates of coordinates and spins of quaternions.
 
     Raises:
         NoTree: it is none; the message says why.
@@ -40,7 +40,7 @@ def tree_of(kinematics: Kinematics[Node]) -> Tree:
     draft.places.append(space.ground(draft))
     for body in kinematics.model.bodies:
         _load(draft, space, body)
-    names = [c.name for c in kinematics.model.coordinates]
+    names = speeds.names(kinematics.model)
     gravity = kinematics.vector(kinematics.model.gravity)
     places, frames = settled(draft)
     return Tree(tuple(places), joints(places, names), gravity, frames)
@@ -48,11 +48,12 @@ def tree_of(kinematics: Kinematics[Node]) -> Tree:
 
 def _refuse(kinematics: Kinematics[Node]) -> None:
     model, algebra = kinematics.model, kinematics.algebra
-    if model.speeds:
+    plain = motions.plain(model)
+    if model.speeds and [s.symbol for s in speeds.plain(model)] != [c.rate for c in plain]:
         raise NoTree("its speeds are declared")
     if model.energy.kinetic != 0:
         raise NoTree("a kinetic energy is given as a formula")
-    for c in model.coordinates:
+    for c in plain:
         if not all(isinstance(algebra.of(s).datum, Read) for s in (c.symbol, c.rate)):
             raise NoTree(f"{c.name} follows from other coordinates")
 

@@ -9,6 +9,7 @@ from functools import cached_property
 import sympy as sp
 
 from eomgen.algebra.graph import Node
+from eomgen.mechanics import motions, speeds
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.recursive.records import NoTree
 from eomgen.mechanics.vectors import Vector, add, scale
@@ -33,17 +34,25 @@ class Moving:
 
 @dataclass(frozen=True)
 class Clock:
-    """The coordinates and the time of a scene, as leaves of its graph."""
+    """The coordinates, speeds and the time of a scene, as leaves of its graph."""
 
     kinematics: Kinematics[Node]
 
     @cached_property
+    def numbers(self) -> dict[sp.Symbol, int]:
+        """The number of each speed."""
+        return {s: i for i, s in enumerate(speeds.symbols(self.kinematics.model))}
+
+    @cached_property
     def movers(self) -> tuple[tuple[int, sp.Symbol, Node, Node], ...]:
-        """(number, symbol, leaf, rate) of each coordinate; the time comes last, as number -1."""
-        algebra, model = self.kinematics.algebra, self.kinematics.model
+        """(number of the speed, symbol, leaf, rate) of each coordinate that is no quaternion's.
+
+        The time comes last, as number -1.
+        """
+        algebra, numbers = self.kinematics.algebra, self.numbers
         found = [
-            (i, c.symbol, algebra.of(c.symbol), algebra.of(c.rate))
-            for i, c in enumerate(model.coordinates)
+            (numbers[c.rate], c.symbol, algebra.of(c.symbol), algebra.of(c.rate))
+            for c in motions.plain(self.kinematics.model)
         ]
         return (*found, (-1, TIME, algebra.of(TIME), algebra.number(1)))
 

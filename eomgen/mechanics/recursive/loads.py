@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from eomgen.algebra.derive import pullback
 from eomgen.algebra.graph import Node
-from eomgen.mechanics import efforts
+from eomgen.mechanics import efforts, speeds
 from eomgen.mechanics.efforts import Effort
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.recursive import recursion
@@ -43,8 +43,8 @@ def generalized_forces(kinematics: Kinematics[Node], tree: Tree) -> tuple[Node, 
 
 
 def generalized(kinematics: Kinematics[Node], applied: Sequence[Effort[Node]]) -> list[Node]:
-    """Sum of force . d velocity / d q' for every coordinate: the velocities swept back once."""
-    rates = [kinematics.flow.rates[c.symbol] for c in kinematics.model.coordinates]
+    """Sum of force . d velocity / d q' for every speed: the velocities swept back once."""
+    rates = [kinematics.algebra.of(s) for s in speeds.symbols(kinematics.model)]
     weighted = [
         (velocity, force)
         for effort in applied

@@ -13,6 +13,7 @@ from eomgen.mechanics.recursive.places import Hung
 from eomgen.mechanics.recursive.records import GROUND, NoTree, Place, Point, SpatialFrame
 from eomgen.mechanics.recursive.steps import Flat, Rotation, Shift, Step, Turn
 from eomgen.mechanics.vectors import Matrix, Vector, add, scale, transform, transpose
+from eomgen.model import Quaternion
 from eomgen.model import Turn as Turned
 
 
@@ -40,9 +41,9 @@ class _Path:
         place = Place(self.name, kind, self.base, tuple(self.steps), self.columns)
         return self.draft.put(place)
 
-    def cut(self, part: Moving) -> None:
+    def cut(self, moves: bool) -> None:
         """End a place where another motion begins: what shares a coordinate is joined later."""
-        if part.columns and self.columns:
+        if moves and self.columns:
             self.base, self.steps, self.columns = self.end(), [], {}
 
     def go(self, step: Step, own: dict[int, Vector[Node]]) -> None:
@@ -120,8 +121,10 @@ def _frame(draft: Draft, name: str) -> int:
     offset = draft.clock.moving(hung.components)
     path = _start(draft, name, hung, offset)
     for turn in body.frame.turns:
-        assert isinstance(turn, Turned)  # a quaternion has speeds of its own
-        _turn(path, turn)
+        if isinstance(turn, Quaternion):
+            _turn_freely(path, turn)
+        else:
+            _turn(path, turn)
     return path.end()
 
 
@@ -144,7 +147,7 @@ def _start(draft: Draft, name: str, hung: Hung, offset: Moving) -> _Path:
 
 def _shift(path: _Path, offset: Moving) -> None:
     zero = path.draft.zero
-    path.cut(offset)
+    path.cut(bool(offset.columns))
     step = Shift(path.spin, offset.values, offset.rate, offset.drift)
     path.go(step, {c: (zero, zero, zero, *column) for c, column in offset.columns.items()})
 
@@ -153,7 +156,7 @@ def _turn(path: _Path, turn: Turned) -> None:
     draft = path.draft
     algebra, angle = draft.kinematics.algebra, draft.clock.moving([turn.angle])
     axis = rotation.unit(algebra, turn.axis)
-    path.cut(angle)
+    path.cut(bool(angle.columns))
     (value,), (rate,), (drift,) = angle.values, angle.rate, angle.drift
     step: Step
     number = _aligned(axis, algebra.number(1))
@@ -172,6 +175,20 @@ def _turn(path: _Path, turn: Turned) -> None:
     own = {c: (*scale(slope, axis), zero, zero, zero) for c, (slope,) in angle.columns.items()}
     path.spin = add(path.spin, scale(angle.rate[0], axis))
     path.go(step, own)
+
+
+def _turn_freely(path: _Path, quaternion: Quaternion) -> None:
+    """A ball joint: its speeds are the angular velocity in the axes after the turn."""
+    algebra, zero = path.draft.kinematics.algebra, path.draft.zero
+    path.cut(True)
+    matrix = rotation.quaternion(algebra, [algebra.of(s) for s in quaternion.symbols])
+    spin = tuple(algebra.of(s) for s in quaternion.speeds)
+    before = transform(transpose(matrix), path.spin)
+    units = rotation.identity(algebra, 3)
+    numbers = [path.draft.clock.numbers[s] for s in quaternion.speeds]
+    own = {n: (*axis, zero, zero, zero) for n, axis in zip(numbers, units, strict=True)}
+    path.spin = add(before, spin)
+    path.go(Rotation(matrix, spin, (zero,) * 3, before), own)
 
 
 def _aligned(axis: Sequence[Node], one: Node) -> int | None:
