@@ -109,6 +109,14 @@ class Machine:
             return self.equations.generalized_forces
         return loads.generalized_forces(self.kinematics, tree)
 
+    def inverse_dynamics(self, accelerations: Sequence[Node]) -> Vector[Node]:
+        """M u' + h - Q for these u': by recursion, or by d'Alembert's principle."""
+        tree = self._lumped
+        if tree is None:
+            return virtual_work.inverse_dynamics(self.kinematics, accelerations)
+        applied = loads.of(self.kinematics, tree)
+        return recursion.inverse_dynamics(tree, True, accelerations, applied)
+
     @cached_property
     def energy(self) -> tuple[Node, Node]:
         """T and V."""
@@ -145,7 +153,8 @@ class Machine:
         matrix, bias = self.equations.mass_matrix, self.equations.bias
         right = [q - h for q, h in zip(self.equations.generalized_forces, bias, strict=True)]
         if len(right) > LARGEST_UNROLLED:
-            return tuple(ldl.solve_in_loop(matrix, right)), self.pivots
+            (solution,) = ldl.solve_in_loop(matrix, right)
+            return tuple(solution), self.pivots
         (solution,), pivots = ldl.solve(matrix, right)
         return tuple(solution), self.pivots + pivots
 

@@ -74,6 +74,11 @@ class Study:
         return self.program.engine
 
     @property
+    def compiled(self) -> compile.Machine:
+        """What the program was made of: of a linked scene, the chosen formulation."""
+        return self.machine if self.links is None else self.links.chosen.machine
+
+    @property
     def freedom(self) -> int:
         """The degrees of freedom."""
         if self.links is None:
@@ -146,6 +151,16 @@ def recursed(machine: compile.Machine) -> Report:
 def _routes(model: Model) -> str:
     """Bodies were projected; else both routes start from the author's energies."""
     return "routes" if model.bodies else "energies"
+
+
+def machine_of(text: str | bytes, file: str, wanted: Wanted = AUTO) -> compile.Machine:
+    """The scene on the graph, for whoever has a check of its own; what is linked is studied.
+
+    Raises:
+        SpecError, UsageError, CheckError: as `of_text`.
+    """
+    model = read(text, file)
+    return of_model(model, wanted).compiled if model.constraints else compile.machine_of(model)
 
 
 def _linked(links: LinkedStudy) -> Study:
