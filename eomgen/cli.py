@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import gc
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -39,6 +40,7 @@ from eomgen.wanted import Wanted, wanted
 
 COLLECT_RARELY = 200_000  # a command lives for a second; looking for circles would take a tenth
 SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
+NOTES = frozenset(("latex", "text"))  # targets that show the closed form
 TARGET_NAMES = ("latex", "c", "python", "text")
 
 EXAMPLES = """\b
@@ -70,7 +72,7 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
     from eomgen.outputs import Wish, rendered
 
     wish = Wish(("text",), wishes["language"], wishes["templates"], wishes["steps"])
-    (text,) = rendered(studied(spec, format_, Wanted(formulation)), wish).values()
+    (text,) = rendered(studied(spec, format_, Wanted(formulation, notes=True)), wish).values()
     click.echo(text, nl=False)
 
 
@@ -124,6 +126,7 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
     )
     with reporting(format_, files.shown(spec)):
         choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
+        choice = replace(choice, notes=not NOTES.isdisjoint(targets))
     made = rendered(studied(spec, format_, choice), wish)
     if output == files.STANDARD:
         print_files(made)

@@ -26,12 +26,17 @@ from eomgen.mechanics import (
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.equations import Contribution, Equations
 from eomgen.mechanics.kinematics import Kinematics
-from eomgen.mechanics.vectors import dot
+from eomgen.mechanics.recursive import build, engine, loads, recursion
+from eomgen.mechanics.recursive.engine import Engine
+from eomgen.mechanics.recursive.lumping import lumped
+from eomgen.mechanics.recursive.records import NoTree, Tree
+from eomgen.mechanics.vectors import Matrix, Vector, dot
 from eomgen.model import TIME as TIME_SYMBOL
 from eomgen.model import Coordinate, Description, Model, Prescribed, Speed
 from eomgen.program import Function, Program, Read, Variable
 from eomgen.spec.units import si_unit
 
+LARGEST_MATRIX = 64  # equations; above, n^2 entries of M are not written
 LARGEST_UNROLLED = 12  # equations; above, L D L' runs in a loop
 
 
@@ -56,9 +61,61 @@ class Machine:
         return tuple(node for node in dict.fromkeys(bound) if isinstance(node.datum, Read))
 
     @cached_property
+    def tree(self) -> Tree | NoTree:
+        """The tree of joints, or why there is none."""
+        try:
+            return build.tree_of(self.kinematics)
+        except NoTree as reason:
+            return reason
+
+    @cached_property
+    def engine(self) -> Engine | None:
+        """The way to the accelerations of a tree without links; None: by the mass matrix."""
+        if isinstance(self.tree, NoTree) or self.kept:
+            return None
+        return engine.choose(self.kinematics, self.tree)
+
+    @cached_property
     def equations(self) -> Equations[Node]:
-        """M, h, Q by d'Alembert's principle."""
-        return virtual_work.derive(self.kinematics)
+        """M, h, Q: by recursion over a tree, by d'Alembert's principle where there is none."""
+        if isinstance(self.tree, NoTree):
+            return virtual_work.derive(self.kinematics)
+        return Equations(self.mass_matrix, self.bias, self.generalized_forces)
+
+    @cached_property
+    def _lumped(self) -> Tree | None:
+        """The tree that the recursion goes over."""
+        if isinstance(self.tree, NoTree):
+            return None
+        return lumped(self.tree) if self.engine is None else self.engine.tree
+
+    @cached_property
+    def mass_matrix(self) -> Matrix[Node]:
+        """M, which a large tree needs for nothing else."""
+        tree = self._lumped
+        return self.equations.mass_matrix if tree is None else recursion.mass_matrix(tree)
+
+    @cached_property
+    def bias(self) -> Vector[Node]:
+        """H of M u' + h = Q."""
+        tree = self._lumped
+        return self.equations.bias if tree is None else recursion.inverse_dynamics(tree, False)
+
+    @cached_property
+    def generalized_forces(self) -> Vector[Node]:
+        """Q of M u' + h = Q."""
+        tree = self._lumped
+        if tree is None:
+            return self.equations.generalized_forces
+        return loads.generalized_forces(self.kinematics, tree)
+
+    def inverse_dynamics(self, accelerations: Sequence[Node]) -> Vector[Node]:
+        """M u' + h - Q for these u': by recursion, or by d'Alembert's principle."""
+        tree = self._lumped
+        if tree is None:
+            return virtual_work.inverse_dynamics(self.kinematics, accelerations)
+        applied = loads.of(self.kinematics, tree)
+        return recursion.inverse_dynamics(tree, True, accelerations, applied)
 
     @cached_property
     def energy(self) -> tuple[Node, Node]:
@@ -88,9 +145,11 @@ class Machine:
 
     @cached_property
     def solution(self) -> tuple[tuple[Node, ...], ldl.Pivots]:
-        """u' = M^-1 (Q - h), unrolled up to `LARGEST_UNROLLED`; with multipliers of kept rows."""
+        """u' by the engine of a tree, or M^-1 (Q - h), or with multipliers of kept rows."""
         if self.kept:
             return self.linked.accelerations, self.linked.pivots
+        if self.engine is not None:
+            return self.engine.accelerations, self.pivots + self.engine.pivots
         matrix, bias = self.equations.mass_matrix, self.equations.bias
         right = [q - h for q, h in zip(self.equations.generalized_forces, bias, strict=True)]
         solution, pivots = solved(matrix, right)
@@ -161,19 +220,19 @@ def _flat(rows: Sequence[Sequence[Node]]) -> list[Node]:
 
 
 def _mass_matrix(m: Machine) -> Function:
-    n = len(m.equations.bias)
+    n = len(m.mass_matrix)
     about = "M of M u' + h = Q"
-    return assemble("mass_matrix", about, (n, n), _flat(m.equations.mass_matrix))
+    return assemble("mass_matrix", about, (n, n), _flat(m.mass_matrix))
 
 
 def _bias(m: Machine) -> Function:
     about = "h of M u' + h = Q: inertia terms without accelerations"
-    return assemble("bias", about, (len(m.equations.bias),), m.equations.bias)
+    return assemble("bias", about, (len(m.bias),), m.bias)
 
 
 def _generalized_forces(m: Machine) -> Function:
     about = "Q of M u' + h = Q: everything applied"
-    forces = m.equations.generalized_forces
+    forces = m.generalized_forces
     return assemble("generalized_forces", about, (len(forces),), forces)
 
 
@@ -226,8 +285,10 @@ FUNCTIONS: dict[str, Build] = {
 
 
 def wanted(model: Model) -> tuple[str, ...]:
-    """The functions of a model: q'' apart only where the speeds are not q'."""
-    unneeded = set() if model.speeds else {"coordinate_accelerations"}
+    """The functions of a model: q'' apart only where the speeds are not q', M of few of them."""
+    few = len(speeds.symbols(model)) <= LARGEST_MATRIX
+    unneeded: set[str] = set() if few else {"mass_matrix"}
+    unneeded |= set() if model.speeds else {"coordinate_accelerations"}
     unneeded |= set() if model.quaternions else {"project_positions"}
     return tuple(f for f in FUNCTIONS if f not in unneeded)
 
@@ -252,6 +313,7 @@ def program(m: Machine) -> Program:
         ),
         outputs=tuple(_variable(o.name, o.description) for o in model.outputs),
         functions=tuple(FUNCTIONS[name](m) for name in wanted(model)),
+        engine="" if m.engine is None else m.engine.said,
     )
 
 

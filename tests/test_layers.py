@@ -39,7 +39,8 @@ ALLOWED: dict[str, set[str]] = {
         "formulation",
         "mechanics",
     },
-    "study": RECORDS | {"wanted", "spec", "mechanics", "compile", "checks", "study_linked"},
+    "study": RECORDS
+    | {"algebra", "wanted", "spec", "mechanics", "compile", "checks", "study_linked"},
     "evaluate_joints": RECORDS
     | {"compile", "compile_reactions", "evaluate", "mechanics", "states"},
     "evaluate_contacts": RECORDS | {"compile_contacts", "evaluate", "mechanics", "states"},
