@@ -6,6 +6,7 @@ import random
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from eomgen.algebra.normal import Form
 from eomgen.analysis import linkage
 from eomgen.analysis.admissible import Admissible
 from eomgen.analysis.cards import Report
+from eomgen.analysis.linkage import Linkage
 from eomgen.compile import Machine
 from eomgen.errors import UsageError
 from eomgen.mechanics import constraints, lagrange, minimal, minimal_graph, nullspace
@@ -40,6 +42,16 @@ class Linked:
     def model(self) -> Model:
         """The scene."""
         return self.machine.model
+
+    @cached_property
+    def links(self) -> Linkage:
+        """The rows as numbers."""
+        return linkage.of(self.machine)
+
+    @cached_property
+    def made(self) -> dict[str, Formulation | UsageError]:
+        """Every formulation, or why the scene does not have it."""
+        return {name: _attempt(maker, self) for name, maker in MAKERS.items()}
 
     @property
     def touches(self) -> bool:
@@ -96,28 +108,38 @@ def choose(scene: Linked, wanted: Wanted = AUTO) -> Formulation:
     if wanted.baumgarte:
         return _stabilised(scene, wanted.baumgarte)
     if wanted.formulation != "auto":
-        return MAKERS[wanted.formulation](scene)
+        return _asked(scene, wanted.formulation)
     if scene.touches:
-        return replace(MAKERS["multiplier"](scene), why="contact and flight, over all coordinates")
+        return replace(_multiplier(scene), why="contact and flight, over all coordinates")
     if scene.asks_reactions:
-        return replace(MAKERS["multiplier"](scene), why="reactions are asked for")
-    for name in ("minimal", "nullspace"):
-        try:
-            return MAKERS[name](scene)
-        except UsageError:
-            continue
-    return replace(MAKERS["multiplier"](scene), why="the rank of the constraints changes")
+        return replace(_multiplier(scene), why="reactions are asked for")
+    reduced = [f for f in available(scene) if f.name != "multiplier"]
+    return reduced[0] if reduced else replace(_multiplier(scene), why=_why_not(scene))
+
+
+def _asked(scene: Linked, name: str) -> Formulation:
+    found = scene.made[name]
+    if isinstance(found, UsageError):
+        raise found
+    return found
+
+
+def _why_not(scene: Linked) -> str:
+    """Why nothing smaller than multipliers will do."""
+    reason = str(scene.made["nullspace"]).removeprefix("nullspace: ")
+    return reason.removesuffix("; use multiplier")
 
 
 def available(scene: Linked) -> tuple[Formulation, ...]:
     """Every formulation that exists for the scene."""
-    found = []
-    for maker in MAKERS.values():
-        try:
-            found.append(maker(scene))
-        except UsageError:
-            continue
-    return tuple(found)
+    return tuple(f for f in scene.made.values() if isinstance(f, Formulation))
+
+
+def _attempt(maker: Callable[[Linked], Formulation], scene: Linked) -> Formulation | UsageError:
+    try:
+        return maker(scene)
+    except UsageError as error:
+        return error
 
 
 def _stabilised(scene: Linked, alpha: Fraction) -> Formulation:
@@ -158,7 +180,7 @@ def _refuse_turning_block(scene: Linked) -> None:
     names = [c.name for c in scene.model.coordinates]
     dependent = scene.report.freedom.basis.dependent
     columns = [names.index(n) for n in dependent]
-    links = linkage.of(scene.machine)
+    links = scene.links
     kept = [i for i, row in enumerate(links.rows) if row.name in scene.machine.kept]
     sizes = []
     for state in (scene.report.initial, *scene.report.states):
@@ -231,8 +253,9 @@ def _refuse_dead_points(
     """A formula whose root nearly vanishes somewhere in the range is not safe."""
     chance = random.Random(scene.model.name)
     sizes: dict[str, list[float]] = {e.coordinate.name: [] for e in found if e.discriminant}
+    start, spans = _values(scene, scene.report.initial), _spans(scene)
     for _ in range(DEAD_POINT_SAMPLES):
-        values = _values(scene, scene.report.initial) | _independent(scene, chance)
+        values = start | {symbol: chance.uniform(*span) for symbol, span in spans.items()}
         for elimination, link in zip(found, chosen, strict=True):
             if elimination.discriminant is not None:
                 size = _number(elimination.discriminant, values)
@@ -249,22 +272,19 @@ def _refuse_dead_points(
             )
 
 
-def _independent(scene: Linked, chance: random.Random) -> dict[Any, float]:
-    """Random independent coordinates: in the declared range, else between the sampled states."""
+def _spans(scene: Linked) -> dict[Any, tuple[float, float]]:
+    """Where independent coordinates are: in the declared range, else between sampled states."""
     names = [c.name for c in scene.model.coordinates]
-    states = [scene.report.initial, *scene.report.states]
-    parameters = scene.report.initial.state.parameters
-    drawn: dict[Any, float] = {}
+    states = [scene.report.initial.state, *(s.state for s in scene.report.states)]
+    found: dict[Any, tuple[float, float]] = {}
     for name in scene.report.freedom.basis.independent:
         j = names.index(name)
-        ends = [float(s.state.coordinates[j]) for s in states]
+        ends: Sequence[Any] = [s.coordinates[j] for s in states]
         if name in scene.model.range:
-            ends = [
-                float(linkage.constant(linkage.of(scene.machine), v, parameters))
-                for v in scene.model.range[name]
-            ]
-        drawn[scene.model.coordinates[j].symbol] = chance.uniform(min(ends), max(ends))
-    return drawn
+            parameters = states[0].parameters
+            ends = [linkage.constant(scene.links, v, parameters) for v in scene.model.range[name]]
+        found[scene.model.coordinates[j].symbol] = float(min(ends)), float(max(ends))
+    return found
 
 
 def _values(scene: Linked, state: Admissible) -> dict[Any, float]:

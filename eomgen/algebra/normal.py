@@ -211,7 +211,9 @@ def multiply(left: Form, right: Form) -> Form:
     # whole numbers over one denominator: sums of fractions would take most of the time
     (first, d1), (second, d2) = _whole(left), _whole(right)
     terms: dict[Key, int] = {}
-    for (m1, w1, s1), c1 in first:
+    for place, ((m1, w1, s1), c1) in enumerate(first):
+        if left is right:  # a square: every mixed product once, doubled
+            second = [(k, 2 * c) for k, c in first[:place]] + first[place : place + 1]
         for (m2, w2, s2), c2 in second:
             monomial = ring.product(m1, m2)
             if w1 and w2:
