@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.algebra.arithmetic import FLOAT, evaluate
-from eomgen.algebra.closed import ClosedForm, Evaluation
+from eomgen.algebra.closed import ClosedForm
 from eomgen.algebra.graph import Node, below
-from eomgen.algebra.normal import Form
 from eomgen.analysis import linkage
 from eomgen.analysis.admissible import Admissible
 from eomgen.analysis.cards import Report
@@ -23,7 +22,7 @@ from eomgen.compile import Machine
 from eomgen.errors import UsageError
 from eomgen.mechanics import constraints, lagrange, minimal, minimal_graph, nullspace
 from eomgen.mechanics.minimal import Elimination, Residual
-from eomgen.mechanics.minimal_graph import Chosen
+from eomgen.mechanics.minimal_graph import Chosen, measure
 from eomgen.model import TIME, Model
 from eomgen.wanted import AUTO, Wanted
 
@@ -216,12 +215,14 @@ def _minimal(scene: Linked) -> Formulation:
         chosen = minimal_graph.choose(found, _values(scene, scene.report.initial))
     except ValueError as error:
         raise UsageError(f"minimal: {error}") from error
-    _refuse_dead_points(scene, found, chosen)
+    _refuse_dead_points(scene, chosen)
     names = ", ".join(c.coordinate.name for c in chosen)
     rooted = [c for c in chosen if c.discriminant is not None]
     branches = ", ".join(f"{c.coordinate.name}: {minimal.BRANCHES[c.branch]:+d}" for c in rooted)
     tail = f", branch {branches}" if branches else ""
-    machine = Machine(minimal_graph.kinematics(scene.model, chosen))
+    values = _values(scene, scene.report.initial)
+    reduced = minimal_graph.derive(scene.model, chosen, scene.machine.kept, values)
+    machine = Machine(reduced.kinematics, (), reduced.pivots)
     return Formulation("minimal", f"{names} eliminated in closed form{tail}", machine)
 
 
@@ -247,23 +248,23 @@ def _eliminations(scene: Linked) -> tuple[Elimination, ...]:
     return found
 
 
-def _refuse_dead_points(
-    scene: Linked, found: Sequence[Elimination], chosen: Sequence[Chosen]
-) -> None:
+def _refuse_dead_points(scene: Linked, chosen: Sequence[Chosen]) -> None:
     """A formula whose root nearly vanishes somewhere in the range is not safe."""
     chance = random.Random(scene.model.name)
-    sizes: dict[str, list[float]] = {e.coordinate.name: [] for e in found if e.discriminant}
+    formulas = [(c.coordinate, measure(c.formula)) for c in chosen]
+    limits = {
+        c.coordinate.name: measure(c.discriminant) for c in chosen if c.discriminant is not None
+    }
+    sizes: dict[str, list[float]] = {name: [] for name in limits}
     start, spans = _values(scene, scene.report.initial), _spans(scene)
     for _ in range(DEAD_POINT_SAMPLES):
         values = start | {symbol: chance.uniform(*span) for symbol, span in spans.items()}
-        for elimination, link in zip(found, chosen, strict=True):
-            if elimination.discriminant is not None:
-                size = _number(elimination.discriminant, values)
-                sizes[elimination.coordinate.name].append(size)
-                if size < 0:
+        for coordinate, formula in formulas:
+            if coordinate.name in limits:
+                sizes[coordinate.name].append(limits[coordinate.name](values))
+                if sizes[coordinate.name][-1] < 0:
                     break
-            formula = elimination.branches[link.branch]
-            values[elimination.coordinate.symbol] = _number(formula, values)
+            values[coordinate.symbol] = formula(values)
     for name, seen in sizes.items():
         if min(seen) < LEAST_DISCRIMINANT * max(abs(s) for s in seen):
             raise UsageError(
@@ -301,14 +302,6 @@ def _values(scene: Linked, state: Admissible) -> dict[Any, float]:
 
 def _known(node: Node, leaves: Mapping[Node, float]) -> bool:
     return all(a in leaves for a in below([node]) if a.operator == "read")
-
-
-def _number(form: Form, values: Mapping[Any, float]) -> float:
-    """The value of a form, infinite where it is not defined."""
-    try:
-        return float(Evaluation(values, float, lambda n, *a: FLOAT.functions[n](*a)).of(form))
-    except (ValueError, ZeroDivisionError):
-        return float("inf")
 
 
 MAKERS: dict[str, Callable[[Linked], Formulation]] = {

@@ -13,7 +13,7 @@ import sympy as sp
 
 from eomgen.algebra import elimination
 from eomgen.algebra.arithmetic import FLOAT, evaluate, over
-from eomgen.algebra.graph import LEAVES, Node, below
+from eomgen.algebra.graph import LEAVES, Graph, Node, below
 from eomgen.algebra.ldl import Pivots
 from eomgen.algebra.lower import GraphAlgebra
 from eomgen.mechanics import constraints, machine
@@ -54,22 +54,27 @@ def derive(
     everything = [algebra.of(c.rate) for c in model.coordinates]
     trial = machine.moving(small, bindings | leaves, everything)
     rows = [r for r in constraints.rows(trial) if r.name in kept]
-    found, pivots = _dependent_rates(trial, rows, dependent, at)
+    found, pivots = dependent_rates(trial, rows, dependent, _leaves(graph, at))
     rates = [found.get(c.rate, algebra.of(c.rate)) for c in model.coordinates]
     return Reduced(machine.moving(small, bindings, rates), pivots)
 
 
-def _dependent_rates(
+def dependent_rates(
     trial: Kinematics[Node],
     rows: Sequence[Row[Node]],
     dependent: Sequence[Coordinate],
-    at: Mapping[str, Sequence[float]],
+    leaves: Mapping[Node, float],
 ) -> tuple[dict[sp.Symbol, Node], Pivots]:
-    """The dependent rates over the independent ones."""
+    """The dependent rates over the independent ones, and the squared pivots with their scales.
+
+    trial: kinematics whose rates of the dependent coordinates are leaves of their own; leaves: the
+    numbers by which the order of elimination is chosen.
+    """
     names = [c.name for c in trial.model.coordinates]
     columns = [names.index(c.name) for c in dependent]
     matrix = [[row.jacobian[j] for j in columns] for row in rows]
-    order = elimination.order_of(_numbers(matrix, at))
+    # J does not depend on the rates
+    order = elimination.order_of([evaluate(row, leaves, FLOAT) for row in matrix])
     # with the dependent rates at zero the rate residual is J_i q'_i + c
     residuals = [row.rate for row in rows]
     values = {a: a for a in below(residuals) if a.operator in LEAVES}
@@ -79,14 +84,10 @@ def _dependent_rates(
     return {c.rate: rate for c, rate in zip(dependent, solution, strict=True)}, pivots
 
 
-def _numbers(
-    matrix: Sequence[Sequence[Node]], at: Mapping[str, Sequence[float]]
-) -> list[list[float]]:
-    """The matrix at a state; J does not depend on the rates."""
-    graph = matrix[0][0].graph
-    leaves = {
+def _leaves(graph: Graph, at: Mapping[str, Sequence[float]]) -> dict[Node, float]:
+    """Arguments of the program as the nodes that read them."""
+    return {
         graph.read(argument, i): value
         for argument, values in at.items()
         for i, value in enumerate(values)
     }
-    return [evaluate(row, leaves, FLOAT) for row in matrix]
