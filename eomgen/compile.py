@@ -118,16 +118,19 @@ class Machine:
     @cached_property
     def outputs(self) -> tuple[Node, ...]:
         """The author's own formulas."""
-        bindings: dict[sp.Symbol, Node] = {}
-        if any(o.formula.free_symbols & _accelerations(self.model) for o in self.model.outputs):
-            pairs = zip(self.model.coordinates, self.accelerations, strict=True)
-            bindings = {c.acceleration: a for c, a in pairs}
-        algebra = self.kinematics.algebra.extended(bindings)
+        return self.outputs_with(self.accelerations if holds_accelerations(self.model) else ())
+
+    def outputs_with(self, accelerations: Sequence[Node]) -> tuple[Node, ...]:
+        """The author's own formulas over these q''; none are needed where no formula holds one."""
+        pairs = zip(self.model.coordinates, accelerations, strict=False)
+        algebra = self.kinematics.algebra.extended({c.acceleration: a for c, a in pairs})
         return tuple(algebra.of(o.formula) for o in self.model.outputs)
 
 
-def _accelerations(model: Model) -> set[sp.Symbol]:
-    return {c.acceleration for c in model.coordinates}
+def holds_accelerations(model: Model) -> bool:
+    """Whether an output mentions an acceleration."""
+    held = {c.acceleration for c in model.coordinates}
+    return any(o.formula.free_symbols & held for o in model.outputs)
 
 
 def machine_of(model: Model) -> Machine:

@@ -70,20 +70,38 @@ def evaluate(
 def _result(study: LinkedStudy, source: Program, chosen: Engine, state: State) -> Result:
     result = named_results(chosen, source, study.scene.model, state)
     if study.scene.touches:
-        touching = Touching(study.machine)
-        result["contacts"] = contacts(chosen, touching, study.scene.model, state)
+        result["contacts"] = contacts(chosen, Touching(study.machine), state)
     if not study.machine.kept:
         return result
-    raw = chosen.call("multipliers", state)
-    multipliers = dict(zip(_kept(study), raw, strict=True))
-    shown = {name: chosen.shown(v) for name, v in multipliers.items()}
-    result["multipliers"] = shown
-    result["reactions"] = _reactions(study, multipliers, state, chosen)
+    result |= _motion_and_forces(study, chosen, state, result.get("contacts"))
     result["residuals"] = {
         "position": _residuals(study, chosen, state, "constraint_residuals"),
         "rate": _residuals(study, chosen, state, "constraint_rates"),
     }
     return result
+
+
+def _motion_and_forces(
+    study: LinkedStudy, chosen: Engine, state: State, modes: Result | None
+) -> Result:
+    """Multipliers and reactions; beside a rough guide all that moves is that of the one mode.
+
+    Nothing where no mode holds, or several do.
+    """
+    shown: Result = {}
+    function = "multipliers"
+    if study.scene.model.guides:
+        assert modes is not None
+        if len(modes["holds"]) != 1:
+            return {}
+        (name,) = modes["holds"]
+        function = f"multipliers_{name}"
+        mode = modes["modes"][name]
+        shown = {k: mode[k] for k in ("accelerations", "outputs") if k in mode}
+    multipliers = dict(zip(_kept(study), chosen.call(function, state), strict=True))
+    shown["multipliers"] = {name: chosen.shown(v) for name, v in multipliers.items()}
+    shown["reactions"] = _reactions(study, multipliers, state, chosen)
+    return shown
 
 
 def _kept(study: LinkedStudy) -> list[str]:

@@ -54,8 +54,8 @@ class Linked:
 
     @property
     def touches(self) -> bool:
-        """Whether a constraint is one-sided: contact and flight need all coordinates."""
-        return any(c.kind == "unilateral" for c in self.model.constraints)
+        """Whether a constraint is one-sided or rough: its modes need all coordinates."""
+        return any(c.kind == "unilateral" or c.rubs for c in self.model.constraints)
 
     @property
     def asks_reactions(self) -> bool:
@@ -109,7 +109,8 @@ def choose(scene: Linked, wanted: Wanted = AUTO) -> Formulation:
     if wanted.formulation != "auto":
         return _asked(scene, wanted.formulation)
     if scene.touches:
-        return replace(_multiplier(scene), why="contact and flight, over all coordinates")
+        modes = "stick and slip" if scene.model.guides else "contact and flight"
+        return replace(_multiplier(scene), why=f"{modes}, over all coordinates")
     if scene.asks_reactions:
         return replace(_multiplier(scene), why="reactions are asked for")
     reduced = [f for f in available(scene) if f.name != "multiplier"]
@@ -155,7 +156,8 @@ def _multiplier(scene: Linked) -> Formulation:
 
 def _refuse_free(scene: Linked, name: str) -> None:
     if scene.touches:
-        raise UsageError(f"{name}: a one-sided constraint needs all coordinates; use multiplier")
+        what = "a constraint with friction" if scene.model.guides else "a one-sided constraint"
+        raise UsageError(f"{name}: {what} needs all coordinates; use multiplier")
     if not scene.machine.kept:
         raise UsageError(f"{name}: no bilateral constraint reduces this scene; use multiplier")
     if not scene.report.freedom.basis.independent:

@@ -110,8 +110,18 @@ def program(scene: Linked, chosen: Formulation) -> Program:
         made,
         coordinates=_initialised(made.coordinates, values),
         speeds=_initialised(made.speeds, values),
-        functions=made.functions + EXTRAS[chosen.name](scene, chosen),
+        functions=_moving(scene, made.functions + EXTRAS[chosen.name](scene, chosen)),
     )
+
+
+def _moving(scene: Linked, functions: tuple[Function, ...]) -> tuple[Function, ...]:
+    """Without the accelerations that a rough guide has in no mode: those without its friction."""
+    if not scene.model.guides:
+        return functions
+    smooth = {"accelerations", "state_derivative", "multipliers"}
+    if compile.holds_accelerations(scene.model):
+        smooth.add("outputs")
+    return tuple(f for f in functions if f.name not in smooth)
 
 
 def _initialised(variables: tuple[Variable, ...], values: dict[str, Any]) -> tuple[Variable, ...]:

@@ -41,7 +41,8 @@ ALLOWED: dict[str, set[str]] = {
     "study": RECORDS | {"wanted", "spec", "mechanics", "compile", "checks", "study_linked"},
     "evaluate_joints": RECORDS
     | {"compile", "compile_reactions", "evaluate", "mechanics", "states"},
-    "evaluate_contacts": RECORDS | {"compile_contacts", "evaluate", "mechanics", "states"},
+    "evaluate_contacts": RECORDS
+    | {"compile", "compile_contacts", "evaluate", "mechanics", "states"},
     "evaluate_linked": RECORDS
     | {"compile_contacts", "evaluate_contacts"}
     | {"algebra", "evaluate", "interpreter", "reactions", "states", "study_linked"},

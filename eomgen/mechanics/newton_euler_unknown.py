@@ -112,9 +112,11 @@ def _dependent(scene: Scene, tree: Sequence[Joint]) -> Iterator[_Cause]:
 def _contacts(scene: Scene, tree: Sequence[Joint]) -> Iterator[_Cause]:
     """What presses or rubs in some modes only: the accelerations here are those without it."""
     model = scene.kinematics.model
+    for guide in model.guides:
+        why = f"every acceleration depends on whether {guide.name} sticks or slides"
+        yield _Cause(why, frozenset(j.body for j in tree))
     for constraint in model.constraints:
-        rubs = constraint.friction is not None and constraint.friction != 0
-        if constraint.kind == "unilateral" or rubs:
+        if constraint.kind == "unilateral":
             related = newton_euler_tree.related_by(model, constraint)
             touched = _touched(tree, Unplaced(constraint.name, "", related))
             yield _Cause(f"the force of {constraint.name} depends on the contact", touched)
