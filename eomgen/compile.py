@@ -73,7 +73,7 @@ class Machine:
     @cached_property
     def rows(self) -> tuple[Row[Node], ...]:
         """Every row of the bilateral constraints."""
-        return constraints.rows(self.kinematics)
+        return constraints.rows(self.kinematics, speeds.symbols(self.model))
 
     @cached_property
     def schur(self) -> multipliers.Schur:
@@ -107,13 +107,27 @@ class Machine:
         """q'' = (dq'/du) u' + the rate of q' with u' = 0."""
         if not self.model.speeds:
             return self.solution[0]
-        algebra = self.kinematics.algebra
-        one = algebra.number(1)
+        coasting = (self.kinematics.rate(r) for r in self.rates)
+        return tuple(a + c for a, c in zip(self.turned(self.solution[0]), coasting, strict=True))
+
+    @cached_property
+    def partial_rates(self) -> tuple[tuple[Node, ...], ...]:
+        """N = dq'/du of declared speeds, a row for each coordinate."""
+        algebra, one = self.kinematics.algebra, self.kinematics.algebra.number(1)
         return tuple(
-            dot([algebra.along(r, {s.symbol: one}) for s in self.model.speeds], self.solution[0])
-            + self.kinematics.rate(r)
-            for r in self.rates
+            tuple(algebra.along(r, {s.symbol: one}) for s in self.model.speeds) for r in self.rates
         )
+
+    def turned(self, values: Sequence[Node]) -> tuple[Node, ...]:
+        """From speeds to coordinates: N * values; the values themselves where the speeds are q'."""
+        if not self.model.speeds:
+            return tuple(values)
+        return tuple(dot(row, values) for row in self.partial_rates)
+
+    @property
+    def speeds(self) -> tuple[Node, ...]:
+        """The speeds u."""
+        return tuple(self.kinematics.algebra.of(s) for s in speeds.symbols(self.model))
 
     @cached_property
     def outputs(self) -> tuple[Node, ...]:

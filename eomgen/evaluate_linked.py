@@ -121,7 +121,9 @@ def _reactions(
 ) -> dict[str, Any]:
     """Named constraint forces; their factors are computed in the digits of the multipliers."""
     given = _given(study, state)
-    leaves = {n: given[n.datum.argument][n.datum.index] for n in study.machine.leaves}
+    # factors hold no rates and no inputs
+    held = [n for n in study.scene.links.leaves if n.datum.index < len(given[n.datum.argument])]
+    leaves = {n: given[n.datum.argument][n.datum.index] for n in held}
 
     def factor(node: Any) -> Any:
         (value,) = node_values([node], leaves, PRECISE)
@@ -178,7 +180,9 @@ def _projected(study: LinkedStudy, source: Program, state: State) -> State:
 
     for _ in range(NEWTON_STEPS):
         state = replace(state, coordinates=step("project_positions", state))
-    state = replace(state, rates=step("project_rates", state))
+    moved = step("project_rates", state)
+    has_speeds = bool(study.scene.model.speeds)
+    state = replace(state, rates=None, speeds=moved) if has_speeds else replace(state, rates=moved)
     if max(size for _, size in _off(study, source, state)) > ON_CONSTRAINT:
         raise CheckError("the state cannot be projected: Newton's method does not converge")
     return state

@@ -14,16 +14,17 @@ import numpy as np
 from eomgen.algebra.arithmetic import FLOAT, evaluate
 from eomgen.algebra.closed import ClosedForm
 from eomgen.algebra.graph import Node, below
-from eomgen.analysis import linkage
+from eomgen.analysis import linkage, virtual
 from eomgen.analysis.admissible import Admissible
 from eomgen.analysis.cards import Report
+from eomgen.analysis.elimination import Matrix
 from eomgen.analysis.linkage import Linkage
 from eomgen.compile import Machine
 from eomgen.errors import UsageError
 from eomgen.mechanics import constraints, lagrange, minimal, minimal_graph, nullspace
 from eomgen.mechanics.minimal import Elimination, Residual
 from eomgen.mechanics.minimal_graph import Chosen, measure
-from eomgen.model import TIME, Model
+from eomgen.model import TIME, Model, Speed
 from eomgen.wanted import AUTO, Wanted
 
 DEAD_POINT_SAMPLES = 200
@@ -80,7 +81,15 @@ class Linked:
                 found[c.name] = place
             if c.rate.name in stated or (follows and c.name not in independent):
                 found[c.rate.name] = rate
-        return found
+        return found | self._decided_speeds(found)
+
+    def _decided_speeds(self, rates: Mapping[str, Any]) -> dict[str, Any]:
+        """Declared speeds whose formulas hold known rates only."""
+        unknown = {c.rate for c in self.model.coordinates if c.rate.name not in rates}
+        known = [s for s in self.model.speeds if not s.formula.free_symbols & unknown]
+        nodes = [self.links.kinematics.algebra.of(s.formula) for s in known]
+        values = linkage.values(self.links, nodes, self.report.initial.state, linkage.PRECISE)
+        return dict(zip((s.name for s in known), values, strict=True))
 
 
 @dataclass(frozen=True)
@@ -168,48 +177,67 @@ def _nullspace(scene: Linked) -> Formulation:
     _refuse_free(scene, "nullspace")
     if scene.report.freedom.singularities:
         raise UsageError("nullspace: the constraints lose rank inside `range`; use multiplier")
-    basis = scene.report.freedom.basis
-    _refuse_turning_block(scene)
-    at = _arguments(scene, scene.report.initial, basis.independent)
-    found = nullspace.derive(scene.model, basis.independent, scene.machine.kept, at)
-    why = f"constant rank; the speeds are the rates of {', '.join(basis.independent) or 'nothing'}"
+    matrices = [_slopes(scene, s) for s in (scene.report.initial, *scene.report.states)]
+    own = nullspace.declared(scene.model)
+    columns = _dependent_columns(scene, matrices)
+    _refuse_turning_block(matrices, columns, [own[j] for j in columns])
+    independent = [s.name for j, s in enumerate(own) if j not in columns]
+    at = _arguments(scene.report.initial)
+    found = nullspace.derive(scene.model, independent, scene.machine.kept, at)
+    what = "are" if scene.model.speeds else "are the rates of"
+    names = ", ".join(n.removesuffix("'") for n in independent)
+    why = f"constant rank; the speeds {what} {names}"
     return Formulation("nullspace", why, Machine(found.kinematics, (), found.pivots))
 
 
-def _refuse_turning_block(scene: Linked) -> None:
-    """Dependent rates cannot be solved for where the determinant of their block changes sign."""
+def _dependent_columns(scene: Linked, matrices: Sequence[Matrix]) -> list[int]:
+    """The speeds to solve for: rates of dependent coordinates, or what serves best anywhere."""
+    if scene.model.speeds:
+        return virtual.dependent_columns(matrices)
     names = [c.name for c in scene.model.coordinates]
-    dependent = scene.report.freedom.basis.dependent
-    columns = [names.index(n) for n in dependent]
-    links = scene.links
-    kept = [i for i, row in enumerate(links.rows) if row.name in scene.machine.kept]
-    sizes = []
-    for state in (scene.report.initial, *scene.report.states):
-        rows = linkage.jacobian(links, state.state)
-        block = [[float(rows[i][j]) for j in columns] for i in kept]
-        sizes.append(float(np.linalg.det(np.array(block))))
+    return [names.index(n) for n in scene.report.freedom.basis.dependent]
+
+
+def _slopes(scene: Linked, state: Admissible) -> Matrix:
+    """J of the independent rows over the speeds; it does not depend on these."""
+    machine = scene.machine
+    at = _arguments(state)
+    at["state"] += [0.0] * len(machine.speeds)
+    leaves = {
+        leaf: at[leaf.datum.argument][leaf.datum.index]
+        for leaf in machine.leaves
+        if leaf.datum.argument in at
+    }
+    return [evaluate(r.jacobian, leaves, FLOAT) for r in machine.rows if r.name in machine.kept]
+
+
+def _refuse_turning_block(
+    matrices: Sequence[Matrix], columns: Sequence[int], dependent: Sequence[Speed]
+) -> None:
+    """Dependent rates cannot be solved for where the determinant of their block changes sign."""
+    blocks = ([[row[j] for j in columns] for row in m] for m in matrices)
+    sizes = [float(np.linalg.det(np.array(block))) for block in blocks]
     if min(sizes) * max(sizes) <= 0:
+        names = ", ".join(s.name.removesuffix("'") for s in dependent)
         raise UsageError(
-            f"nullspace: W-PIVOT: {', '.join(dependent)} cannot stay dependent over the range; "
+            f"nullspace: W-PIVOT: {names} cannot stay dependent over the range; "
             "give other coordinates `role: free`, narrow the range, or use multiplier"
         )
 
 
-def _arguments(
-    scene: Linked, state: Admissible, independent: Sequence[str]
-) -> dict[str, list[float]]:
-    """The arguments of a program over all coordinates and the independent rates."""
-    names = [c.name for c in scene.model.coordinates]
-    rates = [state.state.rates[names.index(n)] for n in names if n in independent]
+def _arguments(state: Admissible) -> dict[str, list[float]]:
+    """The arguments of a program, without speeds."""
     return {
         "time": [float(state.state.time)],
-        "state": [float(v) for v in (*state.state.coordinates, *rates)],
+        "state": [float(v) for v in state.state.coordinates],
         "parameters": [float(v) for v in state.state.parameters],
     }
 
 
 def _minimal(scene: Linked) -> Formulation:
     _refuse_free(scene, "minimal")
+    if scene.model.speeds:
+        raise UsageError("minimal: the declared speeds move all coordinates; use nullspace")
     if any(c.kind == "nonholonomic" for c in scene.model.constraints):
         raise UsageError("minimal: a nonholonomic constraint eliminates no coordinate")
     found = _eliminations(scene)

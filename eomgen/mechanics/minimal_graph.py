@@ -121,5 +121,7 @@ def _over_leaves(
     trial = machine.moving(model, everything, [everything[c.rate] for c in model.coordinates])
     rows = [r for r in constraints.rows(trial) if r.name in kept]
     leaves = {n: values[s] for s, n in everything.items() if n.operator in LEAVES and s in values}
-    rates, pivots = nullspace.dependent_rates(trial, rows, dependent, leaves)
+    columns = [j for j, c in enumerate(model.coordinates) if c in dependent]
+    unknown = [model.coordinates[j].rate for j in columns]
+    rates, pivots = nullspace.dependent_speeds(rows, columns, everything, (unknown, leaves))
     return places, rates, pivots

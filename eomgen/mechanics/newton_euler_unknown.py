@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from eomgen.mechanics import newton_euler_loads, newton_euler_tree
+from eomgen.mechanics import newton_euler_loads, newton_euler_tree, speeds
 from eomgen.mechanics.newton_euler_loads import Scene, Unplaced
 from eomgen.mechanics.newton_euler_tree import Joint
 
@@ -123,7 +123,9 @@ def _contacts(scene: Scene, tree: Sequence[Joint]) -> Iterator[_Cause]:
 
 
 def _coordinates(scene: Scene, jacobian: Sequence[object]) -> frozenset[sp.Symbol]:
-    """The coordinates that a row moves with."""
-    zero = scene.kinematics.algebra.number(0)
-    pairs = zip(scene.kinematics.model.coordinates, jacobian, strict=True)
-    return frozenset(c.symbol for c, entry in pairs if entry is not zero)
+    """The coordinates that the speeds of a row move."""
+    kinematics = scene.kinematics
+    zero, moving = kinematics.algebra.number(0), 0
+    for symbol, entry in zip(speeds.symbols(kinematics.model), jacobian, strict=True):
+        moving |= 0 if entry is zero else kinematics.algebra.of(symbol).leaves
+    return frozenset(symbol for symbol, r in kinematics.flow.rates.items() if r.leaves & moving)
