@@ -42,6 +42,7 @@ class Machine:
     kept: tuple[str, ...] = ()  # names of the independent rows, with a multiplier each
     pivots: ldl.Pivots = ()  # that the rates divide by
     baumgarte: Fraction = Fraction(0)  # alpha [1/s] of stabilised rows; zero: none
+    weight: Fraction = Fraction(0)  # w, where M + w J'J has to stand for a singular M
 
     @property
     def model(self) -> Model:
@@ -78,7 +79,17 @@ class Machine:
     @cached_property
     def schur(self) -> multipliers.Schur:
         """The Schur complement of the independent rows."""
-        return multipliers.schur(self.equations, [r for r in self.rows if r.name in self.kept])
+        return multipliers.schur(self.equations, self.independent_rows, self.weight)
+
+    @property
+    def independent_rows(self) -> list[Row[Node]]:
+        """The rows with a multiplier each."""
+        return [r for r in self.rows if r.name in self.kept]
+
+    @cached_property
+    def inertia(self) -> tuple[tuple[Node, ...], ...]:
+        """What is divided by: M, or M + w J'J."""
+        return multipliers.inertia(self.equations, self.independent_rows, self.weight)
 
     @cached_property
     def linked(self) -> multipliers.Solution:

@@ -14,7 +14,7 @@ import numpy as np
 from eomgen.algebra.arithmetic import FLOAT, evaluate
 from eomgen.algebra.closed import ClosedForm
 from eomgen.algebra.graph import Node, below
-from eomgen.analysis import linkage, virtual
+from eomgen.analysis import augmented, linkage, virtual
 from eomgen.analysis.admissible import Admissible
 from eomgen.analysis.cards import Report
 from eomgen.analysis.elimination import Matrix
@@ -104,7 +104,10 @@ class Formulation:
 def linked(machine: Machine, report: Report) -> Linked:
     """The scene with its independent rows."""
     kept = tuple(r.name for r in machine.rows if r.name not in report.freedom.dropped)
-    return Linked(replace(machine, kept=kept), report)
+    found = Linked(replace(machine, kept=kept), report)
+    if not kept or found.touches:
+        return found
+    return Linked(augmented.regular(found.machine, (report.initial, *report.states)), report)
 
 
 def choose(scene: Linked, wanted: Wanted = AUTO) -> Formulation:
@@ -119,11 +122,11 @@ def choose(scene: Linked, wanted: Wanted = AUTO) -> Formulation:
         return _asked(scene, wanted.formulation)
     if scene.touches:
         modes = "stick and slip" if scene.model.guides else "contact and flight"
-        return replace(_multiplier(scene), why=f"{modes}, over all coordinates")
+        return _multiplier_because(scene, f"{modes}, over all coordinates")
     if scene.asks_reactions:
-        return replace(_multiplier(scene), why="reactions are asked for")
+        return _multiplier_because(scene, "reactions are asked for")
     reduced = [f for f in available(scene) if f.name != "multiplier"]
-    return reduced[0] if reduced else replace(_multiplier(scene), why=_why_not(scene))
+    return reduced[0] if reduced else _multiplier_because(scene, _why_not(scene))
 
 
 def _asked(scene: Linked, name: str) -> Formulation:
@@ -160,7 +163,14 @@ def _stabilised(scene: Linked, alpha: Fraction) -> Formulation:
 
 
 def _multiplier(scene: Linked) -> Formulation:
-    return Formulation("multiplier", "it was asked for", scene.machine)
+    return _multiplier_because(scene, "it was asked for")
+
+
+def _multiplier_because(scene: Linked, why: str) -> Formulation:
+    if scene.machine.weight:
+        weight = float(scene.machine.weight)
+        why += f"; M is singular where the constraints decide: M + {weight:g} J'J stands for it"
+    return Formulation("multiplier", why, scene.machine)
 
 
 def _refuse_free(scene: Linked, name: str) -> None:
@@ -177,7 +187,8 @@ def _nullspace(scene: Linked) -> Formulation:
     _refuse_free(scene, "nullspace")
     if scene.report.freedom.singularities:
         raise UsageError("nullspace: the constraints lose rank inside `range`; use multiplier")
-    matrices = [_slopes(scene, s) for s in (scene.report.initial, *scene.report.states)]
+    states = (scene.report.initial, *scene.report.states)
+    matrices = [augmented.matrices(scene.machine, s)[1].tolist() for s in states]
     own = nullspace.declared(scene.model)
     columns = _dependent_columns(scene, matrices)
     _refuse_turning_block(matrices, columns, [own[j] for j in columns])
@@ -196,19 +207,6 @@ def _dependent_columns(scene: Linked, matrices: Sequence[Matrix]) -> list[int]:
         return virtual.dependent_columns(matrices)
     names = [c.name for c in scene.model.coordinates]
     return [names.index(n) for n in scene.report.freedom.basis.dependent]
-
-
-def _slopes(scene: Linked, state: Admissible) -> Matrix:
-    """J of the independent rows over the speeds; it does not depend on these."""
-    machine = scene.machine
-    at = _arguments(state)
-    at["state"] += [0.0] * len(machine.speeds)
-    leaves = {
-        leaf: at[leaf.datum.argument][leaf.datum.index]
-        for leaf in machine.leaves
-        if leaf.datum.argument in at
-    }
-    return [evaluate(r.jacobian, leaves, FLOAT) for r in machine.rows if r.name in machine.kept]
 
 
 def _refuse_turning_block(

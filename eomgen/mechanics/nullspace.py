@@ -17,6 +17,7 @@ from eomgen.algebra.arithmetic import FLOAT, evaluate, over
 from eomgen.algebra.graph import LEAVES, Graph, Node, below
 from eomgen.algebra.ldl import Pivots
 from eomgen.algebra.lower import GraphAlgebra
+from eomgen.errors import UsageError
 from eomgen.mechanics import constraints, machine, speeds
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.kinematics import Kinematics
@@ -77,6 +78,12 @@ def dependent_speeds(
     matrix = [[row.jacobian[j] for j in columns] for row in rows]
     # J does not depend on the speeds
     order = elimination.order_of([evaluate(row, leaves, FLOAT) for row in matrix])
+    if len(order.columns) < len(columns):
+        names = ", ".join(str(symbol).removesuffix("'") for symbol in dependent)
+        raise UsageError(
+            f"W-PIVOT: the constraints do not determine the rates of {names} at the initial state; "
+            "start elsewhere, give other coordinates `role: free`, or use multiplier"
+        )
     # with the dependent speeds at zero the rate residual is J_i u_i + c
     residuals = [row.rate for row in rows]
     algebra = GraphAlgebra(residuals[0].graph, bindings)
