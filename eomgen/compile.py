@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -18,6 +18,7 @@ from eomgen.mechanics import (
     constraints,
     energies,
     machine,
+    motions,
     multipliers,
     speeds,
     virtual_work,
@@ -104,7 +105,8 @@ class Machine:
         matrix, bias = self.equations.mass_matrix, self.equations.bias
         right = [q - h for q, h in zip(self.equations.generalized_forces, bias, strict=True)]
         if len(right) > LARGEST_UNROLLED:
-            return tuple(ldl.solve_in_loop(matrix, right)), self.pivots
+            (solution,) = ldl.solve_in_loop(matrix, right)
+            return tuple(solution), self.pivots
         (solution,), pivots = ldl.solve(matrix, right)
         return tuple(solution), self.pivots + pivots
 
@@ -143,18 +145,24 @@ class Machine:
     @cached_property
     def outputs(self) -> tuple[Node, ...]:
         """The author's own formulas."""
-        return self.outputs_with(self.accelerations if holds_accelerations(self.model) else ())
+        return self.outputs_with(self.motion if holds_motion(self.model) else {})
 
-    def outputs_with(self, accelerations: Sequence[Node]) -> tuple[Node, ...]:
-        """The author's own formulas over these q''; none are needed where no formula holds one."""
-        pairs = zip(self.model.coordinates, accelerations, strict=False)
-        algebra = self.kinematics.algebra.extended({c.acceleration: a for c, a in pairs})
+    def outputs_with(self, motion: Mapping[sp.Symbol, Node]) -> tuple[Node, ...]:
+        """The author's own formulas over these q'' and u'; none where no formula holds one."""
+        algebra = self.kinematics.algebra.extended(motion)
         return tuple(algebra.of(o.formula) for o in self.model.outputs)
 
+    @cached_property
+    def motion(self) -> dict[sp.Symbol, Node]:
+        """q'' and u' on the motion, by their symbols."""
+        pairs = zip(self.model.coordinates, self.accelerations, strict=True)
+        own = zip(self.model.speeds, self.solution[0], strict=bool(self.model.speeds))
+        return {s.rate: a for s, a in own} | {c.acceleration: a for c, a in pairs}
 
-def holds_accelerations(model: Model) -> bool:
-    """Whether an output mentions an acceleration."""
-    held = {c.acceleration for c in model.coordinates}
+
+def holds_motion(model: Model) -> bool:
+    """Whether an output mentions q'' or u'."""
+    held = {c.acceleration for c in model.coordinates} | {s.rate for s in model.speeds}
     return any(o.formula.free_symbols & held for o in model.outputs)
 
 
@@ -210,6 +218,12 @@ def _state_derivative(m: Machine) -> Function:
     return assemble("state_derivative", about, (len(results),), results, pivots)
 
 
+def _project_positions(m: Machine) -> Function:
+    about = "the coordinates with every quaternion divided by its length"
+    results = motions.normalised(m.model, m.kinematics.algebra)
+    return assemble("project_positions", about, (len(results),), results)
+
+
 def _energy(m: Machine) -> Function:
     return assemble("energy", "kinetic and potential energy [J]", (2,), m.energy)
 
@@ -227,6 +241,7 @@ FUNCTIONS: dict[str, Build] = {
     "accelerations": _accelerations_function,
     "coordinate_accelerations": _coordinate_accelerations,
     "state_derivative": _state_derivative,
+    "project_positions": _project_positions,
     "energy": _energy,
     "outputs": _outputs,
 }
@@ -234,7 +249,9 @@ FUNCTIONS: dict[str, Build] = {
 
 def wanted(model: Model) -> tuple[str, ...]:
     """The functions of a model: q'' apart only where the speeds are not q'."""
-    return tuple(f for f in FUNCTIONS if model.speeds or f != "coordinate_accelerations")
+    unneeded = set() if model.speeds else {"coordinate_accelerations"}
+    unneeded |= set() if model.quaternions else {"project_positions"}
+    return tuple(f for f in FUNCTIONS if f not in unneeded)
 
 
 def program(m: Machine) -> Program:

@@ -8,7 +8,7 @@ from functools import cached_property
 
 from eomgen.algebra.assemble import assemble
 from eomgen.algebra.graph import Node
-from eomgen.compile import Machine, holds_accelerations
+from eomgen.compile import Machine, holds_motion
 from eomgen.mechanics import contacts, contacts_conditions, contacts_modes, contacts_motion
 from eomgen.mechanics.contacts import Contact
 from eomgen.mechanics.contacts_modes import FLIGHT, Mode
@@ -157,8 +157,9 @@ def _of_guides(scene: Touching, mode: Mode, found: Motion) -> Iterator[Function]
     values = list(found.multipliers.values())
     about = f"lambda of the independent rows in the mode {mode.name}"
     yield assemble(f"multipliers_{mode.name}", about, (len(values),), values, found.pivots)
-    if holds_accelerations(machine.model):
-        outputs = machine.outputs_with(found.accelerations)
+    if holds_motion(machine.model):
+        pairs = zip(machine.model.coordinates, found.accelerations, strict=True)
+        outputs = machine.outputs_with({c.acceleration: a for c, a in pairs})
         about = f"the outputs of the spec in the mode {mode.name}"
         yield assemble(f"outputs_{mode.name}", about, (len(outputs),), outputs, found.pivots)
 

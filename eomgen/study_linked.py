@@ -119,7 +119,7 @@ def _moving(scene: Linked, functions: tuple[Function, ...]) -> tuple[Function, .
     if not scene.model.guides:
         return functions
     smooth = {"accelerations", "state_derivative", "multipliers"}
-    if compile.holds_accelerations(scene.model):
+    if compile.holds_motion(scene.model):
         smooth.add("outputs")
     return tuple(f for f in functions if f.name not in smooth)
 

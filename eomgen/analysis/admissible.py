@@ -21,7 +21,6 @@ from eomgen.compile import Machine
 from eomgen.errors import UsageError
 
 MOVED = PRECISE.number(10) ** -12  # less is not worth a word
-NOISE = PRECISE.number(10) ** -40  # what Newton's method in 50 digits leaves of a zero
 CONTRADICTS = 1e-4  # a row is named when its residual is no less than this share of the largest
 
 DEPENDENT = 1e-9  # of the largest singular value: columns depend on each other
@@ -167,14 +166,9 @@ def _placed(linkage: Linkage, state: State, free: Sequence[int]) -> State:
         for start in starts(linkage, state, movable):
             outcome = newton.close(problem, start, movable)
             if outcome.closed:
-                return replace(state, coordinates=_without_noise(outcome.values))
+                return replace(state, coordinates=outcome.values)
             outcomes.append(outcome)
     raise UsageError(_contradiction(linkage, outcomes, [r.name for r in linkage.holonomic]))
-
-
-def _without_noise(values: Sequence[Any]) -> tuple[Any, ...]:
-    """Zero where nothing but round-off is left: single precision cannot even hold 1e-49."""
-    return tuple(PRECISE.number(0) if abs(v) < NOISE else v for v in values)
 
 
 def _moving(linkage: Linkage, state: State, free: Sequence[int]) -> State:
@@ -188,7 +182,7 @@ def _moving(linkage: Linkage, state: State, free: Sequence[int]) -> State:
     for movable in (free, range(len(state.rates))):
         outcome = newton.close(problem, state.rates, movable)
         if outcome.closed:
-            return replace(state, rates=_without_noise(outcome.values))
+            return replace(state, rates=outcome.values)
         outcomes.append(outcome)
     raise UsageError(_contradiction(linkage, outcomes, [r.name for r in linkage.rows]))
 

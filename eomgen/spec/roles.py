@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from eomgen.spec import quaternions
 from eomgen.spec.formulas import field
 from eomgen.spec.language import LANGUAGE
 from eomgen.spec.ledger import Mistake
@@ -23,6 +24,7 @@ def check(whole: Mapping, root: Mapping, scene: Scene) -> None:
         *_roles(root, _has_holonomic(whole)),
         *_guesses(root, are_there),
         *_speeds(root, whole),
+        *_quaternions(root, are_there),
     ):
         scene.ledger.note(mistake)
 
@@ -84,6 +86,13 @@ def _speeds(root: Mapping, whole: Mapping) -> Iterator[Mistake]:
             message = "not supported: speeds beside unilateral constraints or friction"
             hint = "leave 'speeds' out and write the equations in the rates"
             yield Mistake(entry.key, "E602", message, hint)
+
+
+def _quaternions(root: Mapping, are_there: bool) -> Iterator[Mistake]:
+    for entry in _entries(root, "coordinates") if are_there else ():
+        if quaternions.is_quaternion(entry.value):
+            message = "not supported yet: a quaternion beside constraints"
+            yield Mistake(entry.key, "E602", message, "turn by angles")
 
 
 def _entries(root: Mapping, section: str) -> tuple[Entry, ...]:
