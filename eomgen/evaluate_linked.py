@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from eomgen import interpreter, reactions
+from eomgen import compile_watch, interpreter, reactions
 from eomgen.algebra.arithmetic import evaluate as node_values
 from eomgen.algebra.arithmetic import mpmath_arithmetic
 from eomgen.compile_contacts import Touching
@@ -83,6 +83,10 @@ def placed(
 
 def _result(study: LinkedStudy, source: Program, chosen: Engine, state: State) -> Result:
     result = named_results(chosen, source, study.scene.model, state)
+    if any(f.name == "watch" for f in source.functions):
+        watched = compile_watch.names(study.machine, None)
+        bits = compile_watch.mask(watched, chosen.call("watch", state))
+        result["status"] = {"bits": bits, "words": list(compile_watch.words(bits))}
     if study.scene.touches:
         result["contacts"] = contacts(chosen, Touching(study.machine), state)
     if not study.machine.kept:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from eomgen import compile_watch
 from eomgen.algebra.arithmetic import FLOAT, evaluate
 from eomgen.algebra.closed import ClosedForm
 from eomgen.algebra.graph import Node, below
@@ -20,11 +21,13 @@ from eomgen.analysis.cards import Report
 from eomgen.analysis.elimination import Matrix
 from eomgen.analysis.linkage import Linkage
 from eomgen.compile import Machine
+from eomgen.compile_watch import Block
 from eomgen.errors import UsageError
 from eomgen.mechanics import constraints, lagrange, minimal, minimal_graph, nullspace
 from eomgen.mechanics.minimal import Elimination, Residual
 from eomgen.mechanics.minimal_graph import Chosen, measure
 from eomgen.model import TIME, Model, Speed
+from eomgen.program import Read
 from eomgen.wanted import AUTO, Wanted
 
 DEAD_POINT_SAMPLES = 200
@@ -106,6 +109,7 @@ class Formulation:
     name: str
     why: str
     machine: Machine
+    block: Block | None = None  # what gives the dependent speeds
 
 
 def linked(machine: Machine, report: Report) -> Linked:
@@ -205,7 +209,16 @@ def _nullspace(scene: Linked) -> Formulation:
     what = "are" if scene.model.speeds else "are the rates of"
     names = ", ".join(n.removesuffix("'") for n in independent)
     why = f"constant rank; the speeds {what} {names}"
-    return Formulation("nullspace", why, Machine(found.kinematics, (), found.pivots))
+    return Formulation("nullspace", why, *_reduced(scene, found))
+
+
+def _reduced(scene: Linked, found: nullspace.Reduced) -> tuple[Machine, Block]:
+    """The machine over independent speeds, and the block that it is watched by."""
+    values = _values(scene, scene.report.initial)
+    bindings = found.kinematics.algebra.bindings
+    leaves = {n: values.get(s, 0.0) for s, n in bindings.items() if isinstance(n.datum, Read)}
+    block = compile_watch.block(found.determinant, found.pivots, leaves)
+    return Machine(found.kinematics, (), found.pivots), block
 
 
 def _dependent_columns(scene: Linked, matrices: Sequence[Matrix]) -> list[int]:
@@ -257,8 +270,8 @@ def _minimal(scene: Linked) -> Formulation:
     tail = f", branch {branches}" if branches else ""
     values = _values(scene, scene.report.initial)
     reduced = minimal_graph.derive(scene.model, chosen, scene.machine.kept, values)
-    machine = Machine(reduced.kinematics, (), reduced.pivots)
-    return Formulation("minimal", f"{names} eliminated in closed form{tail}", machine)
+    why = f"{names} eliminated in closed form{tail}"
+    return Formulation("minimal", why, *_reduced(scene, reduced))
 
 
 def _eliminations(scene: Linked) -> tuple[Elimination, ...]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from eomgen import compile, compile_contacts, compile_linked, formulation
+from eomgen import compile, compile_contacts, compile_linked, compile_watch, formulation
 from eomgen.analysis import cards
 from eomgen.checks import agreement, dimensions, expectations, links, mass, power, samples
 from eomgen.compile import Machine
@@ -110,8 +110,15 @@ def program(scene: Linked, chosen: Formulation) -> Program:
         made,
         coordinates=_initialised(made.coordinates, values),
         speeds=_initialised(made.speeds, values),
-        functions=_moving(scene, made.functions + EXTRAS[chosen.name](scene, chosen)),
+        functions=_moving(
+            scene, made.functions + EXTRAS[chosen.name](scene, chosen) + _watch(chosen)
+        ),
     )
+
+
+def _watch(chosen: Formulation) -> tuple[Function, ...]:
+    found = compile_watch.function(chosen.machine, chosen.block)
+    return () if found is None else (found,)
 
 
 def _moving(scene: Linked, functions: tuple[Function, ...]) -> tuple[Function, ...]:

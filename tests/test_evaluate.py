@@ -109,13 +109,13 @@ def linked_results(name: str, using: str, digits: int) -> list[evaluate.Result]:
 def leaves(values: dict[str, Any], path: tuple[str, ...] = ()) -> Iterator[tuple[Any, Any]]:
     """The numbers of nested groups, each with its path; words are passed over."""
     for name, value in values.items():
-        if name in ("holds", "because"):
+        if name in ("holds", "because", "words"):
             continue
         if isinstance(value, list):
             value = {str(place): v for place, v in enumerate(value)}
         if isinstance(value, dict):
             yield from leaves(value, (*path, name))
-        elif not isinstance(value, bool) and name not in ("on", "meaning", "must_be"):
+        elif not isinstance(value, bool) and name not in ("on", "meaning", "must_be", "words"):
             yield (*path, name), mpmath.mpf(value)
 
 

@@ -90,11 +90,11 @@ def derive(
     small = replace(model, coordinates=free, constraints=())
     bindings = machine.known(small)
     graph = bindings[TIME].graph
-    places, rates, pivots = _over_leaves(model, dependent, kept, (bindings, values))
+    places, rates, pivots, determinant = _over_leaves(model, dependent, kept, (bindings, values))
     for link in chosen:
         bindings[link.coordinate.symbol] = GraphAlgebra(graph, bindings).of(link.formula)
     # the leaves that stood for dependent coordinates give way to their formulas
-    nodes = [*rates.values(), *(node for pair in pivots for node in pair)]
+    nodes = [*rates.values(), *(node for pair in pivots for node in pair), determinant]
     put: dict[Node, Node] = {a: a for a in below(nodes) if a.operator in LEAVES}
     put |= {leaf: bindings[symbol] for symbol, leaf in places.items()}
     found = iter(evaluate(nodes, put, over(GraphAlgebra(graph, bindings))))
@@ -103,7 +103,8 @@ def derive(
     flow = {c.symbol: bindings[c.rate] for c in model.coordinates}
     algebra = GraphAlgebra(graph, bindings)
     checked = tuple((next(found), next(found)) for _ in pivots)
-    return Reduced(Kinematics(small, algebra, Flow(own, {**flow, TIME: graph.one})), checked)
+    moving = Kinematics(small, algebra, Flow(own, {**flow, TIME: graph.one}))
+    return Reduced(moving, checked, next(found))
 
 
 def _over_leaves(
@@ -111,8 +112,11 @@ def _over_leaves(
     dependent: Sequence[Coordinate],
     kept: Sequence[str],
     known: tuple[Mapping[sp.Symbol, Node], Mapping[sp.Symbol, float]],
-) -> tuple[dict[sp.Symbol, Node], dict[sp.Symbol, Node], Pivots]:
-    """(dependent coordinates as leaves, their rates over these, pivots): sqrt(a)^2 would be a."""
+) -> tuple[dict[sp.Symbol, Node], dict[sp.Symbol, Node], Pivots, Node]:
+    """(dependent coordinates as leaves, rates over these, pivots, determinant).
+
+    Leaves, for sqrt(a)^2 would be a.
+    """
     bindings, values = known
     graph = bindings[TIME].graph
     places = {c.symbol: graph.symbol(c.name) for c in dependent}
@@ -123,5 +127,5 @@ def _over_leaves(
     leaves = {n: values[s] for s, n in everything.items() if n.operator in LEAVES and s in values}
     columns = [j for j, c in enumerate(model.coordinates) if c in dependent]
     unknown = [model.coordinates[j].rate for j in columns]
-    rates, pivots = nullspace.dependent_speeds(rows, columns, everything, (unknown, leaves))
-    return places, rates, pivots
+    found = nullspace.dependent_speeds(rows, columns, everything, (unknown, leaves))
+    return places, *found

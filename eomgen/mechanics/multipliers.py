@@ -89,7 +89,10 @@ def solve(system: Schur, rate: Fraction = Fraction(0)) -> Solution:
 def responses(
     system: Schur, matrix: Sequence[Sequence[Node]], columns: Sequence[Sequence[Node]]
 ) -> tuple[list[list[Node]], ldl.Pivots]:
-    """a of M a - J' lambda = b, J a = c for every column (b, c), and the pivots."""
+    """a of M a - J' lambda = b, J a = c for every column (b, c), and the pivots.
+
+    matrix: M, or M + w J'J in its place, which changes lambda only.
+    """
     size = len(matrix)
     free, _ = ldl.solve(matrix, *(column[:size] for column in columns))
     rights = [

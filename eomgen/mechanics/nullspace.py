@@ -30,6 +30,7 @@ class Reduced:
 
     kinematics: Kinematics[Node]
     pivots: Pivots
+    determinant: Node  # of the block that was solved for them, but for its sign
 
 
 def declared(model: Model) -> tuple[Speed, ...]:
@@ -57,10 +58,12 @@ def derive(
     unknown = [s.symbol for s in own]
     rows = [r for r in constraints.rows(trial, unknown) if r.name in kept]
     columns = [unknown.index(s) for s in dependent]
-    found, pivots = dependent_speeds(rows, columns, known, (dependent, _leaves(graph, at)))
+    found, pivots, determinant = dependent_speeds(
+        rows, columns, known, (dependent, _leaves(graph, at))
+    )
     bindings |= found
     rates = speeds.rates(model, GraphAlgebra(graph, bindings))
-    return Reduced(machine.moving(small, bindings, rates), pivots)
+    return Reduced(machine.moving(small, bindings, rates), pivots, determinant)
 
 
 def dependent_speeds(
@@ -68,8 +71,8 @@ def dependent_speeds(
     columns: Sequence[int],
     bindings: Mapping[sp.Symbol, Node],
     by: tuple[Sequence[sp.Symbol], Mapping[Node, float]],
-) -> tuple[dict[sp.Symbol, Node], Pivots]:
-    """The dependent speeds over the independent ones, and the squared pivots with their scales.
+) -> tuple[dict[sp.Symbol, Node], Pivots, Node]:
+    """(dependent speeds over the independent ones, squared pivots with scales, their determinant).
 
     columns: of the dependent speeds in the rows; by: (their symbols, which are bound to leaves of
     their own; the numbers by which the order of elimination is chosen).
@@ -90,8 +93,8 @@ def dependent_speeds(
     values = {a: a for a in below(residuals) if a.operator in LEAVES}
     values |= {bindings[s]: algebra.number(0) for s in dependent}
     rest = evaluate(residuals, values, over(algebra))
-    (solution,), pivots = elimination.solve(matrix, [[-r for r in rest]], order)
-    return dict(zip(dependent, solution, strict=True)), pivots
+    (solution,), pivots, determinant = elimination.solve(matrix, [[-r for r in rest]], order)
+    return dict(zip(dependent, solution, strict=True)), pivots, determinant
 
 
 def _leaves(graph: Graph, at: Mapping[str, Sequence[float]]) -> dict[Node, float]:
