@@ -108,9 +108,7 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
     wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"], functions)
     with reporting(format_, files.shown(spec)):
         choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
-    study = studied(spec, format_, choice)
-    with reporting(format_, files.shown(spec)):
-        made = rendered(study, wish)
+    made = rendered(studied(spec, format_, choice), wish)
     if output == files.STANDARD:
         print_files(made)
         return
