@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import gc
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -22,20 +23,25 @@ from eomgen.cli_common import (
     epilog,
     format_option,
     formulation_option,
+    functions_option,
     integrator_option,
     language_option,
+    list_functions_option,
     print_files,
     reporting,
     spec_argument,
     studied,
     templates_option,
 )
+from eomgen.cli_import import import_robot
+from eomgen.cli_regressor import regressor
 from eomgen.cli_simulate import simulate
 from eomgen.errors import EomgenError, UsageError
 from eomgen.wanted import Wanted, wanted
 
 COLLECT_RARELY = 200_000  # a command lives for a second; looking for circles would take a tenth
 SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
+NOTES = frozenset(("latex", "text"))  # targets that show the closed form
 TARGET_NAMES = ("latex", "c", "python", "text")
 
 EXAMPLES = """\b
@@ -67,7 +73,7 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
     from eomgen.outputs import Wish, rendered
 
     wish = Wish(("text",), wishes["language"], wishes["templates"], wishes["steps"])
-    (text,) = rendered(studied(spec, format_, Wanted(formulation)), wish).values()
+    (text,) = rendered(studied(spec, format_, Wanted(formulation, notes=True)), wish).values()
     click.echo(text, nl=False)
 
 
@@ -98,13 +104,15 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 @click.option("--step", metavar="H", help="The step [s] that caps ALPHA at 0.2/H.")
 @integrator_option
 @compensated_option
+@functions_option
+@list_functions_option
 @format_option
 def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -> None:
     """Write lecture notes, C and Python for SPEC."""
     from eomgen.outputs import Wish, rendered
 
     targets = wishes["targets"] or ("latex", "c", "python")
-    integrators = wishes["integrators"]
+    functions, integrators = tuple(wishes["functions"]), wishes["integrators"]
     if wishes["compensated"] and not integrators:
         raise UsageError("--compensated is how integrators add: say --integrator too")
     targets += ("c-steps",) if integrators else ()
@@ -113,14 +121,14 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
         wishes["language"],
         wishes["templates"],
         wishes["steps"],
+        functions,
         integrators,
         wishes["compensated"],
     )
     with reporting(format_, files.shown(spec)):
         choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
-    study = studied(spec, format_, choice)
-    with reporting(format_, files.shown(spec)):
-        made = rendered(study, wish)
+        choice = replace(choice, notes=not NOTES.isdisjoint(targets))
+    made = rendered(studied(spec, format_, choice), wish)
     if output == files.STANDARD:
         print_files(made)
         return
@@ -160,11 +168,14 @@ def check(specs: tuple[str, ...], format_: str) -> None:
 )
 @click.option("--project", is_flag=True, help="Move states to the nearest admissible ones.")
 @click.option("--joints", is_flag=True, help="Add the forces between components (Newton-Euler).")
+@functions_option
+@list_functions_option
 @format_option
 def evaluate(spec: str, state: str | None, format_: str, **wishes: Any) -> None:
     """Compute accelerations, energies, forces and outputs of SPEC at given states, as JSON.
 
-    Without --state the spec's initial values are the state.
+    Without --state the spec's initial values are the state. With --functions the results of these
+    functions are shown instead, row by row.
     """
     import json
 
@@ -222,6 +233,9 @@ def statics(spec: str, format_: str, output: str, force: bool, **wishes: Any) ->
         return
     for path in files.write_all(Path(output), made, force=force):
         click.echo(str(path))
+
+
+commands.add_command(regressor)
 
 
 @commands.command(epilog=epilog("eomgen new my_system", "eomgen new crane --like furuta_pendulum"))
@@ -284,6 +298,7 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
         click.echo(str(path))
 
 
+commands.add_command(import_robot)
 commands.add_command(simulate)
 commands.add_command(chart)
 

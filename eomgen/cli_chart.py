@@ -72,7 +72,7 @@ def positive(name: str, default: float | None, words: str) -> Callable[[Command]
 @click.option("--integrators", callback=_list, help="Such as rk4,verlet.  [default: all]")
 @click.option("--precisions", default="f64,f32", show_default=True, callback=_list)
 @click.option("--steps", callback=_steps, help="LARGEST:SMALLEST:COUNT [s].  [default: by modes]")
-@positive("--seconds", 60.0, "What the whole chart may take; runs too long for it are left out.")
+@positive("--seconds", 40.0, "For runs and timing; what takes too long is left out.")
 @click.option("--state", help="JSON file with the start; - is stdin.  [default: `initial`]")
 @click.option("--input", "inputs", multiple=True, metavar="NAME=VALUE", help="Repeatable.")
 @click.option("--out", default="chart", show_default=True, help="Folder.")

@@ -128,11 +128,12 @@ def outputs_of(span: tuple[float, float], choice: Choice, every: float | None) -
     Without `every`, `ROWS` of them, or as many whole steps of a fixed-step method as come near.
 
     Raises:
-        UsageError: there would be too many, or a row would not fall on a step.
+        UsageError: there would be too many of them or of steps, or a row would not fall on a step.
     """
     start, end = span
     gap = (end - start) / ROWS if every is None else every
     if choice.is_fixed:
+        integrate.grid_of(span, choice.step, 1)
         gap = _whole_steps(gap, choice.step, is_exact=every is not None)
     if gap > end - start:
         return np.array([start, end])

@@ -18,7 +18,6 @@ from eomgen.simulate import Verdict
 from eomgen.simulate_method import AUTO, Choice, Wish, checked, choose, wanted
 from eomgen.simulate_report import ENERGY_TOLERANCE
 from eomgen.simulate_setup import Setup, setup, start_of
-from eomgen.stepping import machine_of
 from eomgen.study import Study
 
 FRAMES = 300  # of an animation
@@ -125,7 +124,7 @@ class Job:
         wanted_times = np.linspace(times[0], times[-1], min(FRAMES, len(times)))
         chosen = np.unique(np.searchsorted(times, wanted_times - 1e-12).clip(0, len(times) - 1))
         places = self.setup.engine.sweep("places", times[chosen], states[chosen])
-        sketch = compile_places.sketch(machine_of(self.setup.study))
+        sketch = compile_places.sketch(self.setup.study.compiled)
         return animation.page(self.setup.steps.program.title, sketch, times[chosen], places)
 
 
@@ -138,7 +137,7 @@ def job(study: Study, request: Request) -> Job:
     """
     wish = checked(_wish(study, request), study)
     start = start_of(study, request.state, _inputs(request.inputs))
-    extra = (compile_places.function(machine_of(study)),) if request.animate else ()
+    extra = (compile_places.function(study.compiled),) if request.animate else ()
     made = setup(study, (wanted(wish, study),), start, extra)
     choice = choose(wish, made, request.t_end)
     if choice.is_fixed and choice.method not in {m.name for m in made.steps.methods}:

@@ -16,7 +16,7 @@ from eomgen.integrators.methods import METHODS
 from eomgen.integrators.steps import Steps
 from eomgen.study import Study
 
-FOR_RUNS, FOR_TIMES = 0.5, 0.35  # of the seconds that the chart may take
+FOR_RUNS, FOR_TIMES = 0.5, 0.5  # of the seconds that the chart may take
 
 
 def chart(study: Study, sweep: Sweep, state: str, inputs: dict[str, str]) -> Chart:
@@ -26,7 +26,6 @@ def chart(study: Study, sweep: Sweep, state: str, inputs: dict[str, str]) -> Cha
         UsageError: the scene has no chart, a name is unknown, a start is missing.
         CheckError: there is no reference.
     """
-    began = time.monotonic()
     for name in sweep.integrators:
         if name not in METHODS:
             raise UsageError(f"there is no integrator {name!r}; there are {', '.join(METHODS)}")
@@ -35,6 +34,7 @@ def chart(study: Study, sweep: Sweep, state: str, inputs: dict[str, str]) -> Cha
         found = tuple(variants.in_precision(v, precision) for v in found)
     horizon, said = reference.trusted_horizon(found[0], sweep.horizon, sweep.target)
     motion, known = reference.of(found, horizon)
+    began = time.monotonic()
     pairs = _run(
         _plans(found, sweep, motion), motion, known.error, began + FOR_RUNS * sweep.seconds
     )

@@ -29,7 +29,7 @@ class Sweep:
     integrators: tuple[str, ...] = ()  # all that it can have
     precisions: tuple[str, ...] = ("f64", "f32")
     steps: tuple[float, float, int] | None = None  # largest, smallest [s], how many
-    seconds: float = 60.0  # for the whole chart
+    seconds: float = 40.0  # for the runs and their timing
     seed: int = 1  # of the order in which points are timed
 
 

@@ -32,28 +32,32 @@ ROUNDING = {GAP: 2e-15, SPEED: 1e-13, FORCE: 1e-13, RESERVE: 1e-13}  # of a valu
 STANDING = 1e-13  # of the time: it did not pass
 FORCES = (FORCE, RESERVE)
 MOST_CHANGES = 50  # of the mode while the time stands still
-ACCUMULATED = 1e-6  # seconds: impacts that end so soon are taken to have ended
+ACCUMULATED = 2e-6  # of the run: impacts that will have ended so soon are taken to have ended
+SHORTEST = 2e-7  # of the run: a flight so short is rounding as much as motion
 
 
 @dataclass
 class _Impacts:
     """Times of the impacts of each contact, to see them accumulate (Zeno)."""
 
+    span: float  # of the run [s]
     times: dict[str, list[float]] = field(default_factory=dict)
 
-    def end(self, contact: str, t: float) -> float:
-        """When the impacts of a contact will have ended, infinite where they do not.
+    def end(self, contact: str, t: float) -> float | None:
+        """When the impacts of a contact will have ended, if that is now for all that matters.
 
         Intervals that shrink by the factor r end after the last one times r / (1 - r).
         """
         known = self.times.setdefault(contact, [])
         known.append(t)
         if len(known) < 4:
-            return float("inf")
-        first, second, third = np.diff(known[-4:])
-        if not third < second < first:
-            return float("inf")
-        return float(t + third * third / (second - third))
+            return None
+        first, second, third = (float(d) for d in np.diff(known[-4:]))
+        is_shrinking = third < second < first
+        left = third * third / (second - third) if is_shrinking else float("inf")
+        if third < SHORTEST * self.span or left < ACCUMULATED * self.span:
+            return t + left if is_shrinking else t
+        return None
 
 
 @dataclass(frozen=True)
@@ -74,7 +78,7 @@ def pieces(scene: Scene, outputs: Array, state: Array, limits: Tolerances) -> It
         CheckError: an impact is not described, no mode holds, or the solver gives up.
         UsageError: SciPy is not installed.
     """
-    impacts, t, done, total = _Impacts(), float(outputs[0]), 1, 0.0
+    impacts, t, done, total = _Impacts(scene.span), float(outputs[0]), 1, 0.0
     mode, state, rows = _entered(scene, impacts, t, state)
     yield _only(rows, len(state))
     total -= rows.lost
@@ -125,7 +129,7 @@ def _entered(scene: Scene, impacts: _Impacts, t: float, state: Array) -> tuple[M
     after, events = contact_modes.hit(scene, t, state)
     for event in events:
         end = impacts.end(event.contact, t)
-        if end - t < ACCUMULATED:
+        if end is not None:
             what = f"impacts accumulate at t = {end:.9g} s: the contact is closed from here"
             events = (*events, Event(t, event.contact, what))
             after = contact_modes.resting(scene, event.contact, t, after)

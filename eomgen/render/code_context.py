@@ -45,6 +45,7 @@ def interface(program: Program, dialect: Dialect) -> dict[str, Any]:
         "title": program.title,
         "digest": program.digest,
         "version": program.version,
+        "engine": program.engine,
         "coordinates": symbols(program.coordinates, reserved),
         "speeds": symbols(program.speeds, reserved),
         "inputs": symbols(program.inputs, reserved),
@@ -52,8 +53,9 @@ def interface(program: Program, dialect: Dialect) -> dict[str, Any]:
         "outputs": symbols(program.outputs, reserved),
         "functions": functions,
         "operators": tuple(o for o in OPERATORS if o in used),
-        "solve_sizes": tuple(sorted({len(s.names) for s in statements if isinstance(s, Solve)})),
+        "solve_sizes": tuple(sorted({s.size for s in statements if isinstance(s, Solve)})),
         "pivots": any(f.can_fail for f in functions),
+        "in_motion": any("accelerations" in f.takes for f in functions),
     }
 
 
