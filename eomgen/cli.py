@@ -15,6 +15,7 @@ import click
 
 from eomgen import __version__, files
 from eomgen.cli_common import (
+    compensated_option,
     complain,
     decoded,
     derived,
@@ -22,6 +23,7 @@ from eomgen.cli_common import (
     format_option,
     formulation_option,
     functions_option,
+    integrator_option,
     language_option,
     list_functions_option,
     print_files,
@@ -32,6 +34,7 @@ from eomgen.cli_common import (
 )
 from eomgen.cli_import import import_robot
 from eomgen.cli_regressor import regressor
+from eomgen.cli_simulate import simulate
 from eomgen.errors import EomgenError, UsageError
 from eomgen.wanted import Wanted, wanted
 
@@ -98,6 +101,8 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 @formulation_option
 @click.option("--baumgarte", metavar="ALPHA", help="Stabilise multipliers [1/s], only if asked.")
 @click.option("--step", metavar="H", help="The step [s] that caps ALPHA at 0.2/H.")
+@integrator_option
+@compensated_option
 @functions_option
 @list_functions_option
 @format_option
@@ -106,8 +111,19 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
     from eomgen.outputs import Wish, rendered
 
     targets = wishes["targets"] or ("latex", "c", "python")
-    functions = tuple(wishes["functions"])
-    wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"], functions)
+    functions, integrators = tuple(wishes["functions"]), wishes["integrators"]
+    if wishes["compensated"] and not integrators:
+        raise UsageError("--compensated is how integrators add: say --integrator too")
+    targets += ("c-steps",) if integrators else ()
+    wish = Wish(
+        targets,
+        wishes["language"],
+        wishes["templates"],
+        wishes["steps"],
+        functions,
+        integrators,
+        wishes["compensated"],
+    )
     with reporting(format_, files.shown(spec)):
         choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
         choice = replace(choice, notes=not NOTES.isdisjoint(targets))
@@ -282,6 +298,7 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
 
 
 commands.add_command(import_robot)
+commands.add_command(simulate)
 
 
 def main() -> NoReturn:

@@ -244,6 +244,11 @@ class Constraint:
     friction: sp.Expr | None = None  # Coulomb's coefficient, not negative
     description: Description = Description()
 
+    @property
+    def rubs(self) -> bool:
+        """Whether there is friction; a coefficient that is written 0 is none."""
+        return self.friction is not None and self.friction != 0
+
 
 @dataclass(frozen=True)
 class Energy:
@@ -317,3 +322,8 @@ class Model:
     expect: Expectation = Expectation()
     with_units: bool = False  # the spec states units, so every formula is dimension-checked
     digest: str = ""  # sha256 of the spec's text
+
+    @property
+    def guides(self) -> tuple[Constraint, ...]:
+        """Two-sided constraints with friction: the motion is that of a mode, stick or slip."""
+        return tuple(c for c in self.constraints if c.rubs and c.kind != "unilateral")

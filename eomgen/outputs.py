@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from eomgen.errors import EomgenError, UsageError
+from eomgen.integrators.steps import Steps
 from eomgen.render.notes import Notes
 from eomgen.render.targets import TARGETS, Named, render
 from eomgen.render.templating import environment
@@ -26,6 +27,8 @@ class Wish:
     templates: Path | None = None
     steps: bool = False
     functions: tuple[str, ...] = ()  # of C and Python; (): the standard ones
+    integrators: tuple[str, ...] = ()
+    compensated: bool = False
 
 
 def _notes(study: Study, wish: Wish) -> Named:
@@ -39,17 +42,27 @@ def _notes(study: Study, wish: Wish) -> Named:
 
 
 def _program(study: Study, wish: Wish) -> Named:
+    steps = _steps(study, wish) if wish.integrators else None
+    program = study.program if steps is None else steps.program
     if not wish.functions:
-        return study.program
+        return program
     from eomgen.functions import table
 
-    return table.select(study.program, study.compiled, wish.functions)
+    chosen = table.select(program, study.compiled, wish.functions)
+    return chosen if steps is None else steps.completing(chosen)
+
+
+def _steps(study: Study, wish: Wish) -> Steps:
+    from eomgen import stepping
+
+    return stepping.of(study, wish.integrators, compensated=wish.compensated)
 
 
 SUBJECTS: dict[str, Callable[[Study, Wish], Named]] = {
     "latex": _notes,
     "text": _notes,
     "c": _program,
+    "c-steps": _steps,
     "python": _program,
 }
 

@@ -73,9 +73,10 @@ def test_faults_look_as_asked(call):
     ("words", "said"),
     [
         (("nowhere.urdf",), "cannot be read"),
-        ((PENDULUM, "--within", "much"), "'much' is not a decimal number"),
-        ((PENDULUM, "--within", "1"), "give 0 to 0.01 [rad]"),
-        ((PENDULUM, "--within", "-1e-9"), "give 0 to 0.01 [rad]"),
+        ((PENDULUM, "--round-angles", "--within", "much"), "'much' is not a decimal number"),
+        ((PENDULUM, "--round-angles", "--within", "1"), "give 0 to 0.01 [rad]"),
+        ((PENDULUM, "--round-angles", "--within", "-1e-9"), "give 0 to 0.01 [rad]"),
+        ((PENDULUM, "--within", "1e-9"), "--within goes with --round-angles"),
         ((PENDULUM, "-o", "file/arm.yaml"), "choose another folder"),
     ],
 )
@@ -94,7 +95,6 @@ TURNED = changed('<origin xyz="0 0 1"/>', '<origin rpy="1.5708 0 0"/>')
     ("options", "made"),
     [
         ((), "[x, 1.5708]"),
-        (("--within", "1e-5"), "[x, 1.5708]"),
         (("--round-angles",), "[x, 1.5708]"),
         (("--round-angles", "--within", "1e-5"), "[x, pi/2]"),
         (("--floating-base",), "{quaternion: e_base}"),

@@ -197,7 +197,9 @@ CONSTRAINT = Record(
         "restitution": Key(
             "of a unilateral one: rebound over approach speed, from 0 to 1", FORMULA
         ),
-        "friction": Key("of a unilateral one: Coulomb's coefficient, not negative", FORMULA),
+        "friction": Key(
+            "of a surface, unilateral or holonomic: Coulomb's coefficient, not negative", FORMULA
+        ),
         "latex": LATEX,
         "about": ABOUT,
     }
