@@ -51,7 +51,7 @@ def test_help_explains_every_option_and_gives_examples(call, command, flag):
 @pytest.mark.parametrize("command", [None, *COMMANDS])
 def test_the_examples_of_the_help_are_command_lines(command):
     epilog = (commands if command is None else commands.commands[command]).epilog
-    examples = re.findall(r"^  eomgen (\w+) ?([^<>\n]*)", epilog, re.MULTILINE)
+    examples = re.findall(r"^  eomgen (\w+) ?([^<>|\n]*)", epilog, re.MULTILINE)
     assert examples
     for name, words in examples:
         commands.commands[name].make_context(name, words.split())
