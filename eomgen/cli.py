@@ -14,6 +14,8 @@ import click
 
 from eomgen import __version__, files
 from eomgen.cli_common import (
+    code_options,
+    code_style,
     complain,
     decoded,
     derived,
@@ -92,16 +94,20 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 @formulation_option
 @click.option("--baumgarte", metavar="ALPHA", help="Stabilise multipliers [1/s], only if asked.")
 @click.option("--step", metavar="H", help="The step [s] that caps ALPHA at 0.2/H.")
+@code_options
 @format_option
 def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -> None:
     """Write lecture notes, C and Python for SPEC."""
     from eomgen.outputs import Wish, rendered
 
     targets = wishes["targets"] or ("latex", "c", "python")
-    wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"])
     with reporting(format_, files.shown(spec)):
         choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
-    made = rendered(studied(spec, format_, choice), wish)
+        style = code_style(targets, wishes)
+    study = studied(spec, format_, choice)
+    wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"], style)
+    with reporting(format_, files.shown(spec)):
+        made = rendered(study, wish)
     if output == files.STANDARD:
         print_files(made)
         return

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from eomgen.errors import EomgenError
+from eomgen.render.code_context import Style, coded
 from eomgen.render.notes import Notes
 from eomgen.render.targets import TARGETS, Named, render
 from eomgen.render.templating import environment
@@ -25,6 +26,7 @@ class Wish:
     language: str = "en"
     templates: Path | None = None
     steps: bool = False
+    style: Style = Style()
 
 
 def _notes(study: Study, wish: Wish) -> Named:
@@ -38,7 +40,7 @@ def _notes(study: Study, wish: Wish) -> Named:
 
 
 def _program(study: Study, wish: Wish) -> Named:
-    return study.program
+    return coded(study.program, wish.style)
 
 
 SUBJECTS: dict[str, Callable[[Study, Wish], Named]] = {

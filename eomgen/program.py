@@ -2,7 +2,7 @@
 
 Every target renders it, the interpreter defines what it means, and nothing behind it knows
 mechanics. Every function of a program has the arguments t, state = (coordinates, speeds), inputs
-and parameters.
+and parameters; that of a prepared program also the constants which `prepare` makes of parameters.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Read:
-    """One component of an argument: `time` (index 0), `state`, `inputs` or `parameters`."""
+    """One component of `time` (index 0), `state`, `inputs`, `parameters` or `constants`."""
 
     argument: str
     index: int
@@ -84,6 +84,17 @@ class Solve:
 Statement = Assign | RequirePositive | Solve
 
 
+def operands(statement: Statement) -> tuple[Expression, ...]:
+    """The expressions that a statement reads."""
+    match statement:
+        case Assign(_, expression):
+            return (expression,)
+        case RequirePositive(value, scale):
+            return (value, scale)
+        case Solve(_, matrix, right):
+            return matrix + right
+
+
 @dataclass(frozen=True)
 class Function:
     """One function: statements, then its results in row-major order of `shape`."""
@@ -119,6 +130,8 @@ class Program:
     parameters: tuple[Variable, ...]
     outputs: tuple[Variable, ...]
     functions: tuple[Function, ...]
+    prepare: Function | None = None  # from the parameters alone: the `constants` of the functions
+    folded: tuple[Variable, ...] = ()  # parameters that have become numbers in the functions
 
     def function(self, name: str) -> Function:
         """The function of that name."""

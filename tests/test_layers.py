@@ -55,7 +55,7 @@ ALLOWED: dict[str, set[str]] = {
     "rest": RECORDS | {"analysis", "mechanics", "render", "spec", "states"},
     "output_links": {"analysis", "formulation", "render"},
     "outputs": RECORDS | {"output_links", "analysis", "study", "render", "checks", "spec"},
-    "cli_common": {"errors", "files", "outputs", "spec", "study", "wanted"},
+    "cli_common": {"errors", "files", "outputs", "render", "spec", "study", "wanted"},
     "cli": {
         "__init__",
         "cli_common",

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from math import prod
 
-from eomgen.algebra.graph import Node, below
+from eomgen.algebra.graph import Node, below, term
 from eomgen.algebra.ldl import Pivots
+from eomgen.algebra.schedule import Followers, depth_first
 from eomgen.program import (
     Apply,
     Assign,
@@ -29,7 +30,7 @@ class _Draft:
     """A function being written: the expression and size of each node that has been placed."""
 
     shared: frozenset[Node]  # these get a name
-    partners: dict[Node, Node]  # sin(a) <-> cos(a)
+    given: Mapping[Node, Expression]  # these are read, not computed
     expressions: dict[Node, Expression] = field(default_factory=dict)
     sizes: dict[Node, int] = field(default_factory=dict)
     statements: list[Statement] = field(default_factory=list)
@@ -46,35 +47,51 @@ def assemble(
 ) -> Function:
     """The function that computes `results`, and checks the pivots that these depend on.
 
-    What no result depends on is not computed. Values are computed in the order in which the
-    derivation made them.
+    What no result depends on is not computed. Values are computed shortly before they are used.
     """
     if prod(shape) != len(results):
         raise ValueError(f"{name} has {len(results)} results, its shape is {shape}")
     reached = set(below(results))
-    checks = {pivot: scale for pivot, scale in pivots if pivot in reached}
-    nodes = below([*results, *checks.values()])
-    draft = _draft(nodes, [*results, *checks.values()], checks)
-    for node in nodes:
-        if node in checks:
-            _place_all(draft, below([checks[node]], stop=draft.expressions.__contains__))
-        _place_all(draft, [node])
-        if node in checks:
-            _require_positive(draft, node, checks[node])
-    outputs = tuple(draft.expressions[node] for node in results)
-    return Function(name, about, shape, tuple(draft.statements), outputs)
+    checks = tuple(pair for pair in pivots if _divisor(pair[0]) in reached)
+    return written(Function(name, about, shape, (), ()), results, checks, {})
 
 
-def _draft(nodes: list[Node], used: list[Node], checks: dict[Node, Node]) -> _Draft:
-    """An empty draft that knows which nodes to name."""
-    uses = Counter(a for node in nodes for a in node.operands)
-    uses.update(used)
+def _divisor(pivot: Node) -> Node:
+    """What is left of a pivot as a denominator: signs and numbers are taken out of it."""
+    return term(pivot.operands[0] if pivot.operator == "negate" else pivot)[1]
+
+
+def written(
+    head: Function, results: Sequence[Node], pivots: Pivots, given: Mapping[Node, Expression]
+) -> Function:
+    """`head` with statements that check all `pivots` and compute `results`.
+
+    Nodes of `given` are not computed but read as it says.
+    """
+    pivots = tuple(dict.fromkeys(pivots))
+    wanted = [*results, *(a for pair in pivots for a in pair)]
+    nodes = below(wanted, given.__contains__)
     partners = _partners(nodes)
-    shared = [a for a in nodes if a.operands and uses[a] > 1]
-    return _Draft(frozenset([*shared, *checks, *partners]), partners)
+    named = {*partners, *(pivot for pivot, _ in pivots), *_used_twice(nodes, wanted, pivots)}
+    draft = _Draft(frozenset(named), given)
+    checks = _checks(pivots)
+    for node in depth_first(wanted, given.__contains__, _followers(partners, pivots)):
+        _place(draft, node)
+        for pivot, scale in checks[node]:
+            _require_positive(draft, pivot, scale)
+    outputs = tuple(draft.expressions[node] for node in results)
+    return replace(head, statements=tuple(draft.statements), results=outputs)
 
 
-def _partners(nodes: list[Node]) -> dict[Node, Node]:
+def _used_twice(nodes: Iterable[Node], wanted: Sequence[Node], pivots: Pivots) -> list[Node]:
+    """The computed nodes that are read more than once; a pivot's own check does not count."""
+    uses = Counter(a for node in nodes for a in node.operands)
+    uses.update(wanted)
+    uses.subtract(pivot for pivot, _ in pivots)
+    return [a for a in uses if a.operands and uses[a] > 1]
+
+
+def _partners(nodes: Iterable[Node]) -> dict[Node, Node]:
     """Both ways between the sine and the cosine of the same angle."""
     sines = {a.operands[0]: a for a in nodes if a.operator == "sin"}
     pairs = [(sines.get(a.operands[0]), a) for a in nodes if a.operator == "cos"]
@@ -82,13 +99,22 @@ def _partners(nodes: list[Node]) -> dict[Node, Node]:
     return dict(both) | {cosine: sine for sine, cosine in both}
 
 
-def _place_all(draft: _Draft, nodes: list[Node]) -> None:
-    """Place nodes that are not placed yet; a sine brings its cosine along."""
-    for node in nodes:
-        if node not in draft.expressions:
-            _place(draft, node)
-            if node in draft.partners:
-                _place(draft, draft.partners[node])
+def _followers(partners: Mapping[Node, Node], pivots: Pivots) -> Followers:
+    """What is computed right behind a node: a cosine, the pivot of a divisor, its scale."""
+    behind = defaultdict(list, {a: [b] for a, b in partners.items()})
+    for pivot, scale in pivots:
+        behind[_divisor(pivot)].append(pivot)
+        behind[pivot].append(scale)
+    return {a: tuple(nodes) for a, nodes in behind.items()}
+
+
+def _checks(pivots: Pivots) -> Mapping[Node, list[tuple[Node, Node]]]:
+    """The pivots with their scales, under both of these."""
+    found = defaultdict(list)
+    for pair in pivots:
+        for node in dict.fromkeys(pair):
+            found[node].append(pair)
+    return found
 
 
 def _place(draft: _Draft, node: Node) -> None:
@@ -103,6 +129,8 @@ def _place(draft: _Draft, node: Node) -> None:
 
 def _expression(draft: _Draft, node: Node) -> tuple[Expression, int]:
     """The node in terms of its operands, and how many operators stand on the line."""
+    if node in draft.given:
+        return draft.given[node], 0
     match node.operator:
         case "number":
             return Number(node.datum), 0
@@ -127,9 +155,11 @@ def _assign(draft: _Draft, node: Node) -> None:
 
 
 def _require_positive(draft: _Draft, pivot: Node, scale: Node) -> None:
-    value = draft.expressions[pivot]
-    assert isinstance(value, Value)
-    draft.statements.append(RequirePositive(value, draft.expressions[scale]))
+    """The check of a pivot, as soon as it and its scale are placed."""
+    if pivot in draft.expressions and scale in draft.expressions:
+        value = draft.expressions[pivot]
+        assert isinstance(value, Value)
+        draft.statements.append(RequirePositive(value, draft.expressions[scale]))
 
 
 def _solve(draft: _Draft, system: Node) -> None:

@@ -1,4 +1,4 @@
-"""A function as machines like it: powers as products, no dead values, operations counted."""
+"""A function as machines like it: powers as products, waves named, no dead values."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -17,6 +17,7 @@ from eomgen.program import (
     Solve,
     Statement,
     Value,
+    operands,
 )
 
 UNROLLED = 64  # largest exponent written as products
@@ -25,7 +26,10 @@ Name = Callable[[Expression], Value]  # makes an assignment of its argument
 
 
 def lower(function: Function) -> Function:
-    """The same function without integer or half-integer powers and without unused values."""
+    """The same function without integer or half-integer powers and without unused values.
+
+    Every sine and cosine has a statement of its own.
+    """
     statements: list[Statement] = []
     fresh = _fresh_names(function)
 
@@ -35,15 +39,14 @@ def lower(function: Function) -> Function:
         return value
 
     for statement in function.statements:
-        lowered = _map(statement, lambda e: _without_powers(e, name))
-        statements.append(lowered)
-    results = tuple(_without_powers(e, name) for e in function.results)
+        statements.append(_lowered(statement, name))
+    results = tuple(_simple(e, name) for e in function.results)
     return _without_dead_values(replace(function, statements=tuple(statements), results=results))
 
 
 def _fresh_names(function: Function) -> Iterator[str]:
     taken = {n for s in function.statements for n in defined(s)}
-    return (f"power_{i}" for i in count(1) if f"power_{i}" not in taken)
+    return (f"inner_{i}" for i in count(1) if f"inner_{i}" not in taken)
 
 
 def defined(statement: Statement) -> tuple[str, ...]:
@@ -54,17 +57,6 @@ def defined(statement: Statement) -> tuple[str, ...]:
         case Solve(names, _, _):
             return names
     return ()
-
-
-def operands(statement: Statement) -> tuple[Expression, ...]:
-    """The expressions that a statement reads."""
-    match statement:
-        case Assign(_, expression):
-            return (expression,)
-        case RequirePositive(value, scale):
-            return (value, scale)
-        case Solve(_, matrix, right):
-            return matrix + right
 
 
 def _map(statement: Statement, change: Callable[[Expression], Expression]) -> Statement:
@@ -78,11 +70,22 @@ def _map(statement: Statement, change: Callable[[Expression], Expression]) -> St
             return Solve(names, tuple(map(change, matrix)), tuple(map(change, right)))
 
 
-def _without_powers(expression: Expression, name: Name) -> Expression:
+def _lowered(statement: Statement, name: Name) -> Statement:
+    """The statement with simple expressions; one that names a wave is left to do so."""
+    match statement:
+        case Assign(_, Apply("sin" | "cos" as wave, (angle,))):
+            return replace(statement, expression=Apply(wave, (_simple(angle, name),)))
+    return _map(statement, lambda e: _simple(e, name))
+
+
+def _simple(expression: Expression, name: Name) -> Expression:
+    """The expression without integer powers, every sine and cosine in it named before."""
     if not isinstance(expression, Apply):
         return expression
-    changed = tuple(_without_powers(e, name) for e in expression.operands)
+    changed = tuple([_simple(e, name) for e in expression.operands])
     match (expression.operator, changed):
+        case ("sin" | "cos" as wave, _):
+            return name(Apply(wave, changed))
         case ("power", (base, Number(exponent))) if abs(exponent) <= UNROLLED:
             if exponent.denominator == 1:
                 return _power(base, int(exponent), name)

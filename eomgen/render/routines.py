@@ -1,9 +1,11 @@
 """Functions of a program as text: arguments, steps and results, for a template to lay out."""
 
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from eomgen.program import (
     OPERATORS,
+    Apply,
     Assign,
     Expression,
     Function,
@@ -13,14 +15,17 @@ from eomgen.program import (
     Solve,
     Statement,
     Value,
+    operands,
 )
 from eomgen.render.code import Names, expression
 from eomgen.render.dialects import Dialect
 from eomgen.render.lowered import atoms, expressions, lower, operations
 from eomgen.render.names import escaped, prefix
+from eomgen.render.parts import Part, divided
 
 COUNTED = {"add": "+", "subtract": "-", "negate": "-", "multiply": "*", "divide": "/"}
-ARGUMENTS = ("time", "state", "inputs", "parameters")
+ARGUMENTS = ("time", "state", "inputs", "parameters", "constants")
+WORK = "work"  # the array of values that cross between the parts of a function
 
 
 @dataclass(frozen=True)
@@ -35,11 +40,15 @@ class Argument:
 
 @dataclass(frozen=True)
 class Step:
-    """One statement; `kind` is `assign`, `require` or `solve` and says which fields are used."""
+    """One statement; `kind` says which fields are used.
+
+    `assign`; `pair`: sine `name` and cosine `other` of an expression; `require`; `solve`.
+    """
 
     kind: str
     name: str = ""
     expression: str = ""
+    other: str = ""
     scale: str = ""
     values: tuple[tuple[str, int], ...] = ()  # of a solve: the names that are read, and where
     matrix: tuple[str, ...] = ()
@@ -47,43 +56,50 @@ class Step:
 
 
 @dataclass(frozen=True)
+class Body:
+    """Statements as text with all that they need: of a function, or of a part of one."""
+
+    arguments: tuple[Argument, ...]
+    steps: tuple[Step, ...]
+    results: tuple[tuple[int, str], ...]  # where each goes, and what
+    uses: tuple[str, ...]  # which of `ARGUMENTS` and `WORK` are read
+
+
+@dataclass(frozen=True)
 class Routine:
-    """A function as text."""
+    """A function as text; if it is long, `parts` compute it over an array of `slots` numbers."""
 
     name: str
     about: str
     shape: tuple[int, ...]
-    arguments: tuple[Argument, ...]
-    steps: tuple[Step, ...]
-    results: tuple[str, ...]
+    body: Body
+    parts: tuple[Body, ...]
+    slots: int
     operators: frozenset[str]
     operations: str  # such as `3 +  5 *  1 sin`
     uses: tuple[str, ...]  # which of `ARGUMENTS` are read
     can_fail: bool  # a pivot is checked
+
+    @property
+    def size(self) -> int:
+        """The number of results."""
+        return len(self.body.results)
 
 
 def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
     """A function of the program as text, every argument that it reads in a variable of its own."""
     lowered = lower(function)
     trees = expressions(lowered)
-    read = _ordered_reads(trees)
-    values = tuple(dict.fromkeys(a for e in trees for a in atoms(e) if isinstance(a, Value)))
-    given = _argument_names(program)
-    labels = [given[r.argument][r.index] for r in read] + [v.name for v in values]
-    codes = escaped(labels, dialect.reserved | _own_names(program, lowered))
-    names: dict[Expression, str] = dict(zip((*read, *values), codes, strict=True))
-    names[Read("time", 0)] = "t"
-    arguments = tuple(
-        Argument(code, r.argument, r.index, label)
-        for code, r, label in zip(codes, read, labels, strict=False)
-    )
+    text = _Text(dialect, _names(lowered, program, dialect), _labels(program))
+    cut = divided(lowered, dialect.longest)
+    whole = Part(lowered.statements, (), tuple((e, i) for i, e in enumerate(lowered.results)))
     return Routine(
         lowered.name,
         lowered.about,
         lowered.shape,
-        arguments,
-        tuple(_step(s, dialect, names) for s in lowered.statements),
-        tuple(expression(e, dialect, names) for e in lowered.results),
+        text.body(whole) if cut is None else Body((), (), (), _used(trees)),
+        () if cut is None else tuple(map(text.body, cut.parts)),
+        0 if cut is None else cut.slots,
         frozenset(operations(lowered)),
         _counted(lowered),
         _used(trees),
@@ -91,22 +107,47 @@ def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
     )
 
 
+def _labels(program: Program) -> dict[str, list[str]]:
+    """The names of the components of every argument in the specification."""
+    prepared = program.prepare.results if program.prepare else ()
+    return {
+        "time": ["t"],
+        "state": [v.name for v in program.coordinates + program.speeds],
+        "inputs": [v.name for v in program.inputs],
+        "parameters": [v.name for v in program.parameters],
+        "constants": [f"c{i}" for i in range(len(prepared))],
+    }
+
+
+def _names(function: Function, program: Program, dialect: Dialect) -> dict[Expression, str]:
+    """The variable of everything that a function reads or computes."""
+    trees = expressions(function)
+    read = _ordered_reads(trees)
+    values = tuple(dict.fromkeys(a for e in trees for a in atoms(e) if isinstance(a, Value)))
+    given = _labels(program)
+    labels = [given[r.argument][r.index] for r in read] + [v.name for v in values]
+    codes = escaped(labels, dialect.reserved | _own_names(program, function))
+    names: dict[Expression, str] = dict(zip((*read, *values), codes, strict=True))
+    return names | {Read("time", 0): "t"}
+
+
 def _own_names(program: Program, function: Function) -> frozenset[str]:
     """Names that our templates give to types, solvers and their arrays."""
-    own = {f"{prefix(program.name)}_{kind}" for kind in ("real", "params", "status")}
-    for place, statement in enumerate(function.statements, start=1):
+    own = {f"{prefix(program.name)}_{kind}" for kind in ("real", "params", "model", "status")}
+    for statement in function.statements:
         if isinstance(statement, Solve):
+            place = statement.names[0]
             own |= {f"matrix_of_{place}", f"solution_of_{place}", f"solve_{len(statement.names)}"}
     return frozenset(own)
 
 
-def _ordered_reads(trees: tuple[Expression, ...]) -> tuple[Read, ...]:
-    """What is read of state, inputs and parameters, by declaration."""
+def _ordered_reads(trees: Iterable[Expression]) -> tuple[Read, ...]:
+    """What is read of every argument but the time, by declaration."""
     found = {a for e in trees for a in atoms(e) if isinstance(a, Read) and a.argument != "time"}
     return tuple(sorted(found, key=lambda r: (ARGUMENTS.index(r.argument), r.index)))
 
 
-def _used(trees: tuple[Expression, ...]) -> tuple[str, ...]:
+def _used(trees: Iterable[Expression]) -> tuple[str, ...]:
     found = {a.argument for e in trees for a in atoms(e) if isinstance(a, Read)}
     return tuple(a for a in ARGUMENTS if a in found)
 
@@ -115,31 +156,75 @@ def _checks_pivots(function: Function) -> bool:
     return any(isinstance(s, RequirePositive | Solve) for s in function.statements)
 
 
-def _argument_names(program: Program) -> dict[str, list[str]]:
-    return {
-        "state": [v.name for v in program.coordinates + program.speeds],
-        "inputs": [v.name for v in program.inputs],
-        "parameters": [v.name for v in program.parameters],
-    }
+@dataclass(frozen=True)
+class _Text:
+    """How a function is spelled: the names of its values and the labels of its arguments."""
+
+    dialect: Dialect
+    names: Names
+    labels: dict[str, list[str]]
+
+    def of(self, tree: Expression) -> str:
+        """An expression."""
+        return expression(tree, self.dialect, self.names)
+
+    def body(self, part: Part) -> Body:
+        """The statements of a function, or of a part of one."""
+        trees = [e for s in part.statements for e in operands(s)] + [e for e, _ in part.stores]
+        arguments = tuple(
+            Argument(self.names[r], r.argument, r.index, self.labels[r.argument][r.index])
+            for r in _ordered_reads(trees)
+        )
+        loads = tuple(Argument(self.names[v], WORK, slot, v.name) for v, slot in part.loads)
+        return Body(
+            arguments + loads,
+            tuple(self.steps(part.statements)),
+            tuple((place, self.of(e)) for e, place in part.stores),
+            (*_used(trees), WORK),
+        )
+
+    def steps(self, statements: Sequence[Statement]) -> Iterator[Step]:
+        """The statements in order; a sine and its cosine are one step where the dialect likes."""
+        waiting: Statement | None = None
+        for statement in statements:
+            pair = _pair(waiting, statement) if self.dialect.pairs else None
+            if pair is not None:
+                sine, cosine, angle = pair
+                yield Step("pair", self.names[sine], self.of(angle), self.names[cosine])
+                waiting = None
+                continue
+            if waiting is not None:
+                yield self.step(waiting)
+            waiting = statement
+        if waiting is not None:
+            yield self.step(waiting)
+
+    def step(self, statement: Statement) -> Step:
+        """One statement."""
+        match statement:
+            case Assign(name, tree):
+                return Step("assign", self.names[Value(name)], self.of(tree))
+            case RequirePositive(value, scale):
+                return Step("require", self.names[value], scale=self.of(scale))
+            case Solve(unknowns, matrix, right):
+                places = [(Value(name), i) for i, name in enumerate(unknowns)]
+                return Step(
+                    "solve",
+                    name=unknowns[0],
+                    values=tuple((self.names[v], i) for v, i in places if v in self.names),
+                    matrix=tuple(map(self.of, matrix)),
+                    right=tuple(map(self.of, right)),
+                )
 
 
-def _step(statement: Statement, dialect: Dialect, names: Names) -> Step:
-    def text(tree: Expression) -> str:
-        return expression(tree, dialect, names)
-
-    match statement:
-        case Assign(name, tree):
-            return Step("assign", names[Value(name)], text(tree))
-        case RequirePositive(value, scale):
-            return Step("require", names[value], scale=text(scale))
-        case Solve(unknowns, matrix, right):
-            places = [(Value(name), i) for i, name in enumerate(unknowns)]
-            return Step(
-                "solve",
-                values=tuple((names[v], i) for v, i in places if v in names),
-                matrix=tuple(map(text, matrix)),
-                right=tuple(map(text, right)),
-            )
+def _pair(first: Statement | None, second: Statement) -> tuple[Value, Value, Expression] | None:
+    """Sine, cosine and their angle, where two statements compute these."""
+    match first, second:
+        case Assign(a, Apply("sin", (x,))), Assign(b, Apply("cos", (y,))) if x == y:
+            return Value(a), Value(b), x
+        case Assign(a, Apply("cos", (x,))), Assign(b, Apply("sin", (y,))) if x == y:
+            return Value(b), Value(a), x
+    return None
 
 
 def _counted(function: Function) -> str:
