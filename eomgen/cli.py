@@ -106,8 +106,7 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
         style = code_style(targets, wishes)
     study = studied(spec, format_, choice)
     wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"], style)
-    with reporting(format_, files.shown(spec)):
-        made = rendered(study, wish)
+    made = rendered(study, wish)
     if output == files.STANDARD:
         print_files(made)
         return

@@ -1,6 +1,6 @@
 """What the templates of C and Python are given: text, numbers and records of these."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,7 +12,7 @@ from eomgen.render.code import Names, expression, number
 from eomgen.render.dialects import C_FUNCTIONS, PLAIN, PYTHON, C, Dialect
 from eomgen.render.lowered import atoms
 from eomgen.render.names import escaped, prefix
-from eomgen.render.routines import routine
+from eomgen.render.routines import Routine, routine
 
 LONGEST_FORMULA = 60  # characters of a comment
 
@@ -124,14 +124,18 @@ def c(subject: Program | Code) -> dict[str, object]:
     """The names of the C templates: `interface`, the style, what of <math.h> is called."""
     code = _code(subject)
     program = code.program
-    context = interface(program, replace(C, longest=code.style.longest))
-    used = {*context["operators"], *(["abs"] if context["pivots"] else [])}
+    context = interface(program, replace(C, lanes=code.style.batch, longest=code.style.longest))
+    waves = _waves(context["functions"], context["prepare"])
+    own_waves = bool(waves) and (code.style.fast_trig or code.style.batch)
+    used = {*context["operators"], *(["abs"] if context["pivots"] or own_waves else [])}
     calls = [(C.calls[o], f, OPERATORS[o]) for o, f in C_FUNCTIONS.items() if o in used]
     unknown = tuple(v.name for v in program.parameters if v.value is None)
     open_codes = dict(zip(unknown, escaped(unknown, C.reserved), strict=True))
     return context | {
         "fast_trig": code.style.fast_trig,
         "batch": code.style.batch,
+        "waves": waves,
+        "own_waves": own_waves,
         "math": tuple(calls),
         "open_codes": tuple(open_codes.values()),  # arguments of the function that sets parameters
         "defaults": tuple(
@@ -140,6 +144,13 @@ def c(subject: Program | Code) -> dict[str, object]:
         ),
         "initial_state": _initial_state(program, _c_constant),
     }
+
+
+def _waves(functions: Iterable[Routine], prepare: Routine | None) -> tuple[str, ...]:
+    """The kinds of steps that compute a sine or cosine."""
+    everything = [*functions, *([] if prepare is None else [prepare])]
+    kinds = {s.kind for f in everything for body in (f.body, *f.parts) for s in body.steps}
+    return tuple(kind for kind in ("pair", "sine", "cosine") if kind in kinds)
 
 
 def _c_constant(value: sp.Expr) -> str:

@@ -17,6 +17,7 @@ class Dialect:
     reserved: frozenset[str]  # names that a local variable cannot have
     reserved_members: frozenset[str]  # names that a parameter cannot have
     pairs: bool = False  # sine and cosine of an angle in one statement
+    lanes: bool = False  # functions also for many states at once
     longest: int = maxsize  # statements of a function that is not cut into parts
 
 
@@ -55,8 +56,9 @@ C_FUNCTIONS = {  # operator -> function of <math.h>; its macro is the name in ca
 _C_CALLS = {operator: name.upper() for operator, name in C_FUNCTIONS.items()} | {"sign": "SIGN"}
 LONGEST = 2000
 _OWN = _words("""
-t state inputs p m work result lane lanes count first bad REAL EPSILON PIVOT PAIR LANES NOT_ABOVE
-APART sine_and_cosine sine cosine reduced outside bits bits_of real_of gather scatter singly
+t state inputs p m work result lane bad REAL EPSILON PIVOT LANES NOT_ABOVE APART INLINED WAVE_RANGE
+SIGN_BIT bits bits_of real_of reduced sine_and_cosine sine cosine lane_waves lane_sine lane_cosine
+waves gather scatter singly one
 """)
 C = Dialect(
     number="REAL({})",

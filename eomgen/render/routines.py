@@ -1,7 +1,7 @@
 """Functions of a program as text: arguments, steps and results, for a template to lay out."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from eomgen.program import (
     OPERATORS,
@@ -25,7 +25,10 @@ from eomgen.render.parts import Part, divided
 
 COUNTED = {"add": "+", "subtract": "-", "negate": "-", "multiply": "*", "divide": "/"}
 ARGUMENTS = ("time", "state", "inputs", "parameters", "constants")
+ROWS = ("state", "inputs")  # arguments that differ between the states of a batch
+WAVE_KINDS = {"sin": "sine", "cos": "cosine"}
 WORK = "work"  # the array of values that cross between the parts of a function
+WAVES = "waves"  # the array of sines and cosines of a batch
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,8 @@ class Argument:
 class Step:
     """One statement; `kind` says which fields are used.
 
-    `assign`; `pair`: sine `name` and cosine `other` of an expression; `require`; `solve`.
+    `assign`; `sine` or `cosine` of an expression, `pair`: both, the cosine called `other`;
+    `require`; `solve`.
     """
 
     kind: str
@@ -66,6 +70,37 @@ class Body:
 
 
 @dataclass(frozen=True)
+class Wave:
+    """Sines and cosines of an argument, for all lanes in a loop of their own.
+
+    They go to `slot` of `WAVES`, of a pair the cosine to the next.
+    """
+
+    kind: str
+    source: str
+    index: int
+    slot: int
+
+    @property
+    def slots(self) -> int:
+        """How many numbers there are."""
+        return 2 if self.kind == "pair" else 1
+
+
+@dataclass(frozen=True)
+class Lanes:
+    """A function, or a part of one, for many states: what waves it reads, and the rest."""
+
+    waves: tuple[Wave, ...]
+    body: Body
+
+    @property
+    def slots(self) -> int:
+        """The length of `WAVES`."""
+        return sum(w.slots for w in self.waves)
+
+
+@dataclass(frozen=True)
 class Routine:
     """A function as text; if it is long, `parts` compute it over an array of `slots` numbers."""
 
@@ -74,6 +109,7 @@ class Routine:
     shape: tuple[int, ...]
     body: Body
     parts: tuple[Body, ...]
+    lanes: tuple[Lanes, ...]  # of a batch: for every part, or for the whole
     slots: int
     operators: frozenset[str]
     operations: str  # such as `3 +  5 *  1 sin`
@@ -99,6 +135,7 @@ def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
         lowered.shape,
         text.body(whole) if cut is None else Body((), (), (), _used(trees)),
         () if cut is None else tuple(map(text.body, cut.parts)),
+        tuple(map(text.lanes, (whole,) if cut is None else cut.parts)) if dialect.lanes else (),
         0 if cut is None else cut.slots,
         frozenset(operations(lowered)),
         _counted(lowered),
@@ -183,6 +220,28 @@ class _Text:
             (*_used(trees), WORK),
         )
 
+    def lanes(self, part: Part) -> Lanes:
+        """The statements for many states, without the waves of arguments, which come first."""
+        found: dict[Read, dict[str, str]] = {}
+        rest: list[Statement] = []
+        for statement in part.statements:
+            match statement:
+                case Assign(name, Apply("sin" | "cos" as wave, (Read() as angle,))) if (
+                    angle.argument in ROWS and wave not in found.get(angle, {})
+                ):
+                    found.setdefault(angle, {})[wave] = name
+                case _:
+                    rest.append(statement)
+        waves, read, slot = [], [], 0
+        for angle, names in found.items():
+            kind = "pair" if len(names) == 2 else WAVE_KINDS[next(iter(names))]
+            waves.append(Wave(kind, angle.argument, angle.index, slot))
+            for name in (names[w] for w in WAVE_KINDS if w in names):
+                read.append(Argument(self.names[Value(name)], WAVES, slot, name))
+                slot += 1
+        body = self.body(replace(part, statements=tuple(rest)))
+        return Lanes(tuple(waves), replace(body, arguments=body.arguments + tuple(read)))
+
     def steps(self, statements: Sequence[Statement]) -> Iterator[Step]:
         """The statements in order; a sine and its cosine are one step where the dialect likes."""
         waiting: Statement | None = None
@@ -202,6 +261,8 @@ class _Text:
     def step(self, statement: Statement) -> Step:
         """One statement."""
         match statement:
+            case Assign(name, Apply("sin" | "cos" as wave, (angle,))) if self.dialect.pairs:
+                return Step(WAVE_KINDS[wave], self.names[Value(name)], self.of(angle))
             case Assign(name, tree):
                 return Step("assign", self.names[Value(name)], self.of(tree))
             case RequirePositive(value, scale):
