@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import prod
 
 from eomgen.algebra.graph import Node, below, term
 from eomgen.algebra.ldl import Pivots
-from eomgen.algebra.schedule import Followers, depth_first
 from eomgen.program import (
     Apply,
     Assign,
@@ -30,11 +29,16 @@ class _Draft:
     """A function being written: the expression and size of each node that has been placed."""
 
     shared: frozenset[Node]  # these get a name
+    partners: Mapping[Node, Node]  # sin(a) <-> cos(a)
     given: Mapping[Node, Expression]  # these are read, not computed
     expressions: dict[Node, Expression] = field(default_factory=dict)
     sizes: dict[Node, int] = field(default_factory=dict)
     statements: list[Statement] = field(default_factory=list)
     names: int = 0
+
+    def knows(self, node: Node) -> bool:
+        """Whether a node need not be computed any more."""
+        return node in self.expressions or node in self.given
 
     def new_name(self) -> str:
         """The next name: v0, v1, ..."""
@@ -47,7 +51,8 @@ def assemble(
 ) -> Function:
     """The function that computes `results`, and checks the pivots that these depend on.
 
-    What no result depends on is not computed. Values are computed shortly before they are used.
+    What no result depends on is not computed. Values are computed in the order in which the
+    derivation made them.
     """
     if prod(shape) != len(results):
         raise ValueError(f"{name} has {len(results)} results, its shape is {shape}")
@@ -68,26 +73,27 @@ def written(
 
     Nodes of `given` are not computed but read as it says.
     """
-    pivots = tuple(dict.fromkeys(pivots))
-    wanted = [*results, *(a for pair in pivots for a in pair)]
-    nodes = below(wanted, given.__contains__)
+    checks = dict(pivots)
+    wanted = [*results, *checks.values()]
+    nodes = below([*wanted, *checks], given.__contains__)
     partners = _partners(nodes)
-    named = {*partners, *(pivot for pivot, _ in pivots), *_used_twice(nodes, wanted, pivots)}
-    draft = _Draft(frozenset(named), given)
-    checks = _checks(pivots)
-    for node in depth_first(wanted, given.__contains__, _followers(partners, pivots)):
-        _place(draft, node)
-        for pivot, scale in checks[node]:
-            _require_positive(draft, pivot, scale)
+    named = {*partners, *checks, *_used_twice(nodes, wanted)}
+    draft = _Draft(frozenset(named), partners, given)
+    # depth first, 2 to 15 % less values would be alive at a time, and the machine code no better
+    for node in nodes:
+        if node in checks:
+            _place_all(draft, below([checks[node]], stop=draft.knows))
+        _place_all(draft, [node])
+        if node in checks:
+            _require_positive(draft, node, checks[node])
     outputs = tuple(draft.expressions[node] for node in results)
     return replace(head, statements=tuple(draft.statements), results=outputs)
 
 
-def _used_twice(nodes: Iterable[Node], wanted: Sequence[Node], pivots: Pivots) -> list[Node]:
+def _used_twice(nodes: Iterable[Node], wanted: Iterable[Node]) -> list[Node]:
     """The computed nodes that are read more than once; a pivot's own check does not count."""
     uses = Counter(a for node in nodes for a in node.operands)
     uses.update(wanted)
-    uses.subtract(pivot for pivot, _ in pivots)
     return [a for a in uses if a.operands and uses[a] > 1]
 
 
@@ -99,22 +105,13 @@ def _partners(nodes: Iterable[Node]) -> dict[Node, Node]:
     return dict(both) | {cosine: sine for sine, cosine in both}
 
 
-def _followers(partners: Mapping[Node, Node], pivots: Pivots) -> Followers:
-    """What is computed right behind a node: a cosine, the pivot of a divisor, its scale."""
-    behind = defaultdict(list, {a: [b] for a, b in partners.items()})
-    for pivot, scale in pivots:
-        behind[_divisor(pivot)].append(pivot)
-        behind[pivot].append(scale)
-    return {a: tuple(nodes) for a, nodes in behind.items()}
-
-
-def _checks(pivots: Pivots) -> Mapping[Node, list[tuple[Node, Node]]]:
-    """The pivots with their scales, under both of these."""
-    found = defaultdict(list)
-    for pair in pivots:
-        for node in dict.fromkeys(pair):
-            found[node].append(pair)
-    return found
+def _place_all(draft: _Draft, nodes: Iterable[Node]) -> None:
+    """Place nodes that are not placed yet; a sine brings its cosine along."""
+    for node in nodes:
+        if node not in draft.expressions:
+            _place(draft, node)
+            if node in draft.partners:
+                _place(draft, draft.partners[node])
 
 
 def _place(draft: _Draft, node: Node) -> None:
@@ -155,11 +152,9 @@ def _assign(draft: _Draft, node: Node) -> None:
 
 
 def _require_positive(draft: _Draft, pivot: Node, scale: Node) -> None:
-    """The check of a pivot, as soon as it and its scale are placed."""
-    if pivot in draft.expressions and scale in draft.expressions:
-        value = draft.expressions[pivot]
-        assert isinstance(value, Value)
-        draft.statements.append(RequirePositive(value, draft.expressions[scale]))
+    value = draft.expressions[pivot]
+    assert isinstance(value, Value)
+    draft.statements.append(RequirePositive(value, draft.expressions[scale]))
 
 
 def _solve(draft: _Draft, system: Node) -> None:

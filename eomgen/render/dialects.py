@@ -54,7 +54,8 @@ C_FUNCTIONS = {  # operator -> function of <math.h>; its macro is the name in ca
     "log": "log", "abs": "fabs", "min": "fmin", "max": "fmax", "power": "pow",
 }  # fmt: skip
 _C_CALLS = {operator: name.upper() for operator, name in C_FUNCTIONS.items()} | {"sign": "SIGN"}
-LONGEST = 2000
+# statements of about four operations each: beyond, gcc -O2 takes more than linear time
+LONGEST = 1000
 _OWN = _words("""
 t state inputs p m work result lane bad REAL EPSILON PIVOT LANES NOT_ABOVE APART INLINED WAVE_RANGE
 SIGN_BIT bits bits_of real_of reduced sine_and_cosine sine cosine lane_waves lane_sine lane_cosine

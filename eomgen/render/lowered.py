@@ -22,6 +22,7 @@ from eomgen.program import (
 
 UNROLLED = 64  # largest exponent written as products
 ONE = Number(Fraction(1))
+PLAIN = frozenset(("add", "subtract", "multiply", "divide"))  # these stay as they are
 Name = Callable[[Expression], Value]  # makes an assignment of its argument
 
 
@@ -83,6 +84,8 @@ def _simple(expression: Expression, name: Name) -> Expression:
     if not isinstance(expression, Apply):
         return expression
     changed = tuple([_simple(e, name) for e in expression.operands])
+    if expression.operator in PLAIN:
+        return Apply(expression.operator, changed)
     match (expression.operator, changed):
         case ("sin" | "cos" as wave, _):
             return name(Apply(wave, changed))
@@ -118,24 +121,29 @@ def _product(base: Expression, exponent: int, name: Name) -> Expression:
     return Apply("multiply", (root, root))
 
 
-def atoms(expression: Expression) -> Iterator[Number | Read | Value]:
+def atoms(expression: Expression) -> list[Number | Read | Value]:
     """The numbers, arguments and values in an expression, from left to right."""
-    if isinstance(expression, Apply):
-        for operand in expression.operands:
-            yield from atoms(operand)
-    else:
-        yield expression
+    found: list[Number | Read | Value] = []
+    stack = [expression]
+    while stack:
+        part = stack.pop()
+        if isinstance(part, Apply):
+            stack.extend(reversed(part.operands))
+        else:
+            found.append(part)
+    return found
 
 
 def _without_dead_values(function: Function) -> Function:
     """Backward over the statements: an assignment stays if something after it reads it."""
-    alive = {a for e in function.results for a in atoms(e)}
+    alive = {a.name for e in function.results for a in atoms(e) if isinstance(a, Value)}
     kept: list[Statement] = []
     for statement in reversed(function.statements):
-        if isinstance(statement, Assign) and Value(statement.name) not in alive:
+        if isinstance(statement, Assign) and statement.name not in alive:
             continue
         kept.append(statement)
-        alive.update(a for e in operands(statement) for a in atoms(e))
+        for expression in operands(statement):
+            alive.update([a.name for a in atoms(expression) if isinstance(a, Value)])
     return replace(function, statements=tuple(reversed(kept)))
 
 
@@ -147,11 +155,11 @@ def expressions(function: Function) -> tuple[Expression, ...]:
 
 def operations(function: Function) -> Counter[str]:
     """How often each operator is applied; the loop of a `Solve` is not counted."""
-
-    def applied(expression: Expression) -> Iterator[str]:
-        if isinstance(expression, Apply):
-            yield expression.operator
-            for operand in expression.operands:
-                yield from applied(operand)
-
-    return Counter(o for e in expressions(function) for o in applied(e))
+    counts: Counter[str] = Counter()
+    stack = list(expressions(function))
+    while stack:
+        part = stack.pop()
+        if isinstance(part, Apply):
+            counts[part.operator] += 1
+            stack.extend(part.operands)
+    return counts

@@ -34,11 +34,11 @@ class Divided:
 
 
 def divided(function: Function, limit: int) -> Divided | None:
-    """The parts of a function with more statements than `limit`, else None."""
+    """The parts of a function with more statements than `limit`, of half of it; else None."""
     statements = function.statements
     if len(statements) <= limit:
         return None
-    count = -(-len(statements) // limit)
+    count = -(-2 * len(statements) // limit)
     size = -(-len(statements) // count)
     chunks = [statements[i : i + size] for i in range(0, len(statements), size)]
     return _connected(chunks, function.results)

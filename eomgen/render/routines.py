@@ -111,37 +111,64 @@ class Routine:
     parts: tuple[Body, ...]
     lanes: tuple[Lanes, ...]  # of a batch: for every part, or for the whole
     slots: int
+    size: int  # the number of results
     operators: frozenset[str]
     operations: str  # such as `3 +  5 *  1 sin`
     uses: tuple[str, ...]  # which of `ARGUMENTS` are read
     can_fail: bool  # a pivot is checked
 
-    @property
-    def size(self) -> int:
-        """The number of results."""
-        return len(self.body.results)
-
 
 def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
     """A function of the program as text, every argument that it reads in a variable of its own."""
     lowered = lower(function)
-    trees = expressions(lowered)
-    text = _Text(dialect, _names(lowered, program, dialect), _labels(program))
+    found = _survey(expressions(lowered))
+    text = _Text(dialect, _names(lowered, found, program, dialect), _labels(program))
     cut = divided(lowered, dialect.longest)
     whole = Part(lowered.statements, (), tuple((e, i) for i, e in enumerate(lowered.results)))
     return Routine(
         lowered.name,
         lowered.about,
         lowered.shape,
-        text.body(whole) if cut is None else Body((), (), (), _used(trees)),
-        () if cut is None else tuple(map(text.body, cut.parts)),
+        text.body(whole, found) if cut is None else Body((), (), (), found.used),
+        () if cut is None else tuple(text.body(part, _survey_of(part)) for part in cut.parts),
         tuple(map(text.lanes, (whole,) if cut is None else cut.parts)) if dialect.lanes else (),
         0 if cut is None else cut.slots,
+        len(lowered.results),
         frozenset(operations(lowered)),
         _counted(lowered),
-        _used(trees),
+        found.used,
         _checks_pivots(function),
     )
+
+
+@dataclass(frozen=True)
+class _Survey:
+    """What expressions read: arguments by declaration, without the time, and names of values."""
+
+    reads: tuple[Read, ...]
+    values: tuple[str, ...]
+    used: tuple[str, ...]  # which of `ARGUMENTS`
+
+
+def _survey(trees: Iterable[Expression]) -> _Survey:
+    """All that is read, found in one pass."""
+    reads: dict[tuple[str, int], Read] = {}
+    values: dict[str, None] = {}
+    for tree in trees:
+        for atom in atoms(tree):
+            if isinstance(atom, Value):
+                values[atom.name] = None
+            elif isinstance(atom, Read):
+                reads[atom.argument, atom.index] = atom
+    found = {argument for argument, _ in reads}
+    given = [r for r in reads.values() if r.argument != "time"]
+    given.sort(key=lambda r: (ARGUMENTS.index(r.argument), r.index))
+    return _Survey(tuple(given), tuple(values), tuple(a for a in ARGUMENTS if a in found))
+
+
+def _survey_of(part: Part) -> _Survey:
+    inside = (e for s in part.statements for e in operands(s))
+    return _survey([*inside, *(e for e, _ in part.stores)])
 
 
 def _labels(program: Program) -> dict[str, list[str]]:
@@ -156,16 +183,15 @@ def _labels(program: Program) -> dict[str, list[str]]:
     }
 
 
-def _names(function: Function, program: Program, dialect: Dialect) -> dict[Expression, str]:
+def _names(
+    function: Function, found: _Survey, program: Program, dialect: Dialect
+) -> dict[Expression, str]:
     """The variable of everything that a function reads or computes."""
-    trees = expressions(function)
-    read = _ordered_reads(trees)
-    values = tuple(dict.fromkeys(a for e in trees for a in atoms(e) if isinstance(a, Value)))
     given = _labels(program)
-    labels = [given[r.argument][r.index] for r in read] + [v.name for v in values]
+    labels = [given[r.argument][r.index] for r in found.reads] + list(found.values)
     codes = escaped(labels, dialect.reserved | _own_names(program, function))
-    names: dict[Expression, str] = dict(zip((*read, *values), codes, strict=True))
-    return names | {Read("time", 0): "t"}
+    read: list[Expression] = [*found.reads, *map(Value, found.values)]
+    return dict(zip(read, codes, strict=True)) | {Read("time", 0): "t"}
 
 
 def _own_names(program: Program, function: Function) -> frozenset[str]:
@@ -176,17 +202,6 @@ def _own_names(program: Program, function: Function) -> frozenset[str]:
             place = statement.names[0]
             own |= {f"matrix_of_{place}", f"solution_of_{place}", f"solve_{len(statement.names)}"}
     return frozenset(own)
-
-
-def _ordered_reads(trees: Iterable[Expression]) -> tuple[Read, ...]:
-    """What is read of every argument but the time, by declaration."""
-    found = {a for e in trees for a in atoms(e) if isinstance(a, Read) and a.argument != "time"}
-    return tuple(sorted(found, key=lambda r: (ARGUMENTS.index(r.argument), r.index)))
-
-
-def _used(trees: Iterable[Expression]) -> tuple[str, ...]:
-    found = {a.argument for e in trees for a in atoms(e) if isinstance(a, Read)}
-    return tuple(a for a in ARGUMENTS if a in found)
 
 
 def _checks_pivots(function: Function) -> bool:
@@ -205,19 +220,18 @@ class _Text:
         """An expression."""
         return expression(tree, self.dialect, self.names)
 
-    def body(self, part: Part) -> Body:
-        """The statements of a function, or of a part of one."""
-        trees = [e for s in part.statements for e in operands(s)] + [e for e, _ in part.stores]
+    def body(self, part: Part, found: _Survey) -> Body:
+        """The statements of a function, or of a part of one, which read what was found."""
         arguments = tuple(
             Argument(self.names[r], r.argument, r.index, self.labels[r.argument][r.index])
-            for r in _ordered_reads(trees)
+            for r in found.reads
         )
         loads = tuple(Argument(self.names[v], WORK, slot, v.name) for v, slot in part.loads)
         return Body(
             arguments + loads,
             tuple(self.steps(part.statements)),
             tuple((place, self.of(e)) for e, place in part.stores),
-            (*_used(trees), WORK),
+            (*found.used, WORK),
         )
 
     def lanes(self, part: Part) -> Lanes:
@@ -239,7 +253,8 @@ class _Text:
             for name in (names[w] for w in WAVE_KINDS if w in names):
                 read.append(Argument(self.names[Value(name)], WAVES, slot, name))
                 slot += 1
-        body = self.body(replace(part, statements=tuple(rest)))
+        left = replace(part, statements=tuple(rest))
+        body = self.body(left, _survey_of(left))
         return Lanes(tuple(waves), replace(body, arguments=body.arguments + tuple(read)))
 
     def steps(self, statements: Sequence[Statement]) -> Iterator[Step]:
