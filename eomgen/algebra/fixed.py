@@ -101,9 +101,11 @@ class _Rules:
         d, x = self.term(a)
         if x is not a:
             return plain.multiply(plain.multiply(c, d), x)
-        if a.operator == "divide" and self.fixed(a.operands[0]):
-            return plain.divide(plain.multiply(c, a.operands[0]), a.operands[1])
-        return plain.multiply(c, a)
+        if a.operator != "divide" or not self.fixed(a.operands[0]):
+            return plain.multiply(c, a)
+        if a.operands[0] is a.graph.one:
+            return _times_reciprocal(c, a)
+        return plain.divide(plain.multiply(c, a.operands[0]), a.operands[1])
 
     def divide(self, a: Node, b: Node) -> Node:
         """The quotient a / b; where b is fixed the product with its reciprocal."""
@@ -118,3 +120,12 @@ class _Rules:
 def _shift(positive: bool, x: Node, constant: Node) -> Node:
     """The sum +- x + constant."""
     return plain.add(x, constant) if positive else plain.subtract(constant, x)
+
+
+def _times_reciprocal(c: Node, a: Node) -> Node:
+    """The product c a of a reciprocal, which stays one: others share it."""
+    if c.operator != "number" or c.datum in (0, 1):
+        return plain.multiply(c, a)
+    if c.datum < 0:
+        return plain.negate(_times_reciprocal(plain.negate(c), a))
+    return plain.binary("multiply", c, a)

@@ -127,8 +127,9 @@ def _literal(node: Node) -> Fraction:
             f"a formula without coordinates is not real and finite: {error}; "
             "mend the formula or the values of its parameters"
         ) from error
-    mantissa, exponent = found.man_exp
-    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    mantissa, exponent = abs(found).man_exp
+    size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    return -size if found < 0 else size
 
 
 def _assembled(each: Lifted, given: Mapping[Node, Expression]) -> Function:
