@@ -77,7 +77,7 @@ def written(
     wanted = [*results, *checks.values()]
     nodes = below([*wanted, *checks], given.__contains__)
     partners = _partners(nodes)
-    named = {*partners, *checks, *_used_twice(nodes, wanted)}
+    named = {*partners, *checks, *_used_twice(nodes, wanted)} - (given.keys() - checks.keys())
     draft = _Draft(frozenset(named), partners, given)
     # depth first, 2 to 15 % less values would be alive at a time, and the machine code no better
     for node in nodes:
