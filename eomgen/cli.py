@@ -16,19 +16,26 @@ from eomgen import __version__, files
 from eomgen.cli_common import (
     code_options,
     code_style,
+    compensated_option,
     complain,
     decoded,
     derived,
     epilog,
     format_option,
     formulation_option,
+    functions_option,
+    integrator_option,
     language_option,
+    list_functions_option,
     print_files,
     reporting,
     spec_argument,
     studied,
     templates_option,
 )
+from eomgen.cli_import import import_robot
+from eomgen.cli_regressor import regressor
+from eomgen.cli_simulate import simulate
 from eomgen.errors import EomgenError, UsageError
 from eomgen.wanted import Wanted, wanted
 
@@ -95,17 +102,34 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 @click.option("--baumgarte", metavar="ALPHA", help="Stabilise multipliers [1/s], only if asked.")
 @click.option("--step", metavar="H", help="The step [s] that caps ALPHA at 0.2/H.")
 @code_options
+@integrator_option
+@compensated_option
+@functions_option
+@list_functions_option
 @format_option
 def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -> None:
     """Write lecture notes, C and Python for SPEC."""
     from eomgen.outputs import Wish, rendered
 
     targets = wishes["targets"] or ("latex", "c", "python")
+    functions, integrators = tuple(wishes["functions"]), wishes["integrators"]
+    if wishes["compensated"] and not integrators:
+        raise UsageError("--compensated is how integrators add: say --integrator too")
+    targets += ("c-steps",) if integrators else ()
     with reporting(format_, files.shown(spec)):
         choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
         style = code_style(targets, wishes)
     study = studied(spec, format_, choice)
-    wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"], style)
+    wish = Wish(
+        targets,
+        wishes["language"],
+        wishes["templates"],
+        wishes["steps"],
+        functions,
+        integrators,
+        wishes["compensated"],
+        style,
+    )
     made = rendered(study, wish)
     if output == files.STANDARD:
         print_files(made)
@@ -146,11 +170,14 @@ def check(specs: tuple[str, ...], format_: str) -> None:
 )
 @click.option("--project", is_flag=True, help="Move states to the nearest admissible ones.")
 @click.option("--joints", is_flag=True, help="Add the forces between components (Newton-Euler).")
+@functions_option
+@list_functions_option
 @format_option
 def evaluate(spec: str, state: str | None, format_: str, **wishes: Any) -> None:
     """Compute accelerations, energies, forces and outputs of SPEC at given states, as JSON.
 
-    Without --state the spec's initial values are the state.
+    Without --state the spec's initial values are the state. With --functions the results of these
+    functions are shown instead, row by row.
     """
     import json
 
@@ -208,6 +235,9 @@ def statics(spec: str, format_: str, output: str, force: bool, **wishes: Any) ->
         return
     for path in files.write_all(Path(output), made, force=force):
         click.echo(str(path))
+
+
+commands.add_command(regressor)
 
 
 @commands.command(epilog=epilog("eomgen new my_system", "eomgen new crane --like furuta_pendulum"))
@@ -268,6 +298,10 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
         return
     for path in shelf.eject_templates(names, output):
         click.echo(str(path))
+
+
+commands.add_command(import_robot)
+commands.add_command(simulate)
 
 
 def main() -> NoReturn:

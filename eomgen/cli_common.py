@@ -47,6 +47,51 @@ formulation_option = click.option(
     help="Equations of a scene with constraints.",
 )
 
+integrator_option = click.option(
+    "--integrator",
+    "integrators",
+    multiple=True,
+    metavar="METHOD",
+    help="A step function in C, repeatable: semi-euler, verlet, rk4, dopri5, rosenbrock2, "
+    "midpoint, all.",
+)
+compensated_option = click.option(
+    "--compensated", is_flag=True, help="Integrators keep what rounding loses: for float."
+)
+
+
+def _split(context: click.Context, option: click.Parameter, texts: tuple[str, ...]) -> list[str]:
+    """Names between commas, of all that was given."""
+    return [name.strip() for text in texts for name in text.split(",")]
+
+
+functions_option = click.option(
+    "--functions",
+    multiple=True,
+    callback=_split,
+    metavar="NAME,...",
+    help="Only these functions, repeatable; --list-functions says which there are.",
+)
+
+
+def _list_functions(context: click.Context, option: click.Parameter, wanted: bool) -> None:
+    if not wanted:
+        return
+    from eomgen.functions.table import listing
+
+    click.echo(listing())
+    context.exit()
+
+
+list_functions_option = click.option(
+    "--list-functions",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_list_functions,
+    help="Show what --functions can name, and stop.",
+)
+
 
 C_OPTIONS = {
     "fast_trig": "Own sine and cosine in the C: at most 2 units of the last place, vectorisable.",

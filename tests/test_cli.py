@@ -17,7 +17,8 @@ from eomgen import __version__, study
 from eomgen.cli import commands
 
 COMMANDS = [
-    "check", "derive", "evaluate", "examples", "generate", "new", "schema", "statics", "templates",
+    "check", "derive", "evaluate", "examples", "generate", "import", "new", "regressor", "schema",
+    "statics", "templates",
 ]  # fmt: skip
 EQUATION = "m l² φ″ + d φ′ + m l g sin φ = τ"
 STATE = {"coordinates": {"phi": "0.1"}, "rates": {"phi": 2}, "inputs": {"tau": 0.5}}

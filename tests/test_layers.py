@@ -24,6 +24,7 @@ ALLOWED: dict[str, set[str]] = {
     "compile_contacts": RECORDS | {"algebra", "mechanics", "compile"},
     "analysis": RECORDS | {"algebra", "mechanics", "compile"},
     "checks": RECORDS | {"algebra", "mechanics", "compile", "analysis", "formulation"},
+    "functions": RECORDS | {"algebra", "analysis", "checks", "compile", "mechanics", "render"},
     "wanted": {"errors"},
     "formulation": RECORDS | {"wanted", "algebra", "analysis", "compile", "mechanics"},
     "reactions": RECORDS | {"algebra", "formulation", "mechanics"},
@@ -45,20 +46,47 @@ ALLOWED: dict[str, set[str]] = {
     "evaluate_linked": RECORDS
     | {"compile_contacts", "evaluate_contacts"}
     | {"algebra", "evaluate", "interpreter", "reactions", "states", "study_linked"},
-    "answers": RECORDS | {"evaluate_joints", "evaluate", "evaluate_linked", "states", "study"},
-    "render": RECORDS | {"algebra", "mechanics"},
-    "numerics": RECORDS | {"render", "interpreter"},
+    "answers": RECORDS
+    | {"evaluate_joints", "evaluate", "evaluate_linked", "functions", "states", "study"},
+    "integrators": {"errors", "program"},
+    "compile_flow": RECORDS | {"algebra", "checks", "compile", "compile_contacts", "mechanics"},
+    "compile_steps": RECORDS
+    | {"algebra", "checks", "compile", "functions", "integrators", "mechanics"},
+    "compile_places": RECORDS | {"algebra", "compile", "mechanics", "render"},
+    "stepping": RECORDS | {"compile", "compile_steps", "integrators", "study"},
+    "simulate_setup": RECORDS
+    | {"checks", "compile_contacts", "compile_flow", "compile_steps", "evaluate"}
+    | {"evaluate_linked", "integrators", "mechanics", "numerics", "states", "stepping", "study"},
+    "simulate_method": RECORDS | {"integrators", "numerics", "simulate_setup", "study"},
+    "simulate": RECORDS | {"integrators", "numerics", "simulate_method", "simulate_setup"},
+    "simulate_table": RECORDS | {"numerics", "simulate_setup"},
+    "simulate_report": RECORDS
+    | {"numerics", "simulate", "simulate_method", "simulate_setup", "simulate_table"},
+    "simulate_run": RECORDS
+    | {"compile_places", "numerics", "render", "simulate", "simulate_method", "simulate_report"}
+    | {"simulate_setup", "simulate_table", "study"},
+    "cli_simulate": {"cli_common", "errors", "files", "simulate_run", "wanted"},
+    "render": RECORDS | {"algebra", "mechanics", "integrators"},
+    "numerics": RECORDS | {"render", "interpreter", "integrators"},
     "states": RECORDS | {"mechanics"},
     "evaluate": RECORDS | {"mechanics", "compile", "interpreter", "render", "numerics", "states"},
     "files": {"errors"},
     "shelf": {"errors", "files", "render", "spec"},
     "rest": RECORDS | {"analysis", "mechanics", "render", "spec", "states"},
     "output_links": {"analysis", "formulation", "render"},
-    "outputs": RECORDS | {"output_links", "analysis", "study", "render", "checks", "spec"},
-    "cli_common": {"errors", "files", "outputs", "render", "spec", "study", "wanted"},
+    "outputs": RECORDS
+    | {"checks", "functions", "integrators", "output_links", "analysis", "render", "spec"}
+    | {"stepping", "study"},
+    "cli_common": {"errors", "files", "functions", "outputs", "render", "spec", "study", "wanted"},
+    "cli_regressor": {"cli_common", "files", "functions", "study", "wanted"},
+    "urdf": {"__init__", "errors", "spec"},
+    "cli_import": {"cli_common", "errors", "files", "shelf", "spec", "urdf"},
     "cli": {
         "__init__",
+        "cli_import",
         "cli_common",
+        "cli_simulate",
+        "cli_regressor",
         "errors",
         "files",
         "wanted",

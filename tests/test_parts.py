@@ -12,10 +12,11 @@ from tools import tool
 from eomgen.errors import CheckError
 from eomgen.interpreter import FLOAT, call
 from eomgen.numerics.compiled import build
-from eomgen.program import Assign, Value, operands
+from eomgen.program import IN_MOTION, Assign, Value, operands
 from eomgen.render.code_context import Code, Style, coded
 from eomgen.render.lowered import atoms, lower
 from eomgen.render.parts import divided
+from eomgen.render.routines import ROWS
 from eomgen.render.targets import TARGETS, render
 from eomgen.render.templating import environment
 
@@ -63,11 +64,23 @@ def drawn(program, count=1):
     return 0.3, states, inputs, values
 
 
+def rows(function, states, inputs):
+    """What differs between states; the states serve as accelerations too."""
+    moving = (states[: len(states) // 2],) if function.arguments == IN_MOTION else ()
+    return (states, *moving, inputs)
+
+
+def alone(compiled, function, given, k=0):
+    """The results at one of the states."""
+    t, states, inputs, parameters = given
+    columns = [row[:, k] for row in rows(function, states, inputs)]
+    return compiled.call(function.name, t, *columns, parameters)
+
+
 def computed(compiled, function, given):
     """The results, or the words of the error."""
-    t, states, inputs, parameters = given
     try:
-        return compiled.call(function, t, states[:, 0], inputs[:, 0], parameters).tobytes()
+        return alone(compiled, function, given).tobytes()
     except CheckError as error:
         return str(error)
 
@@ -78,7 +91,7 @@ def test_parts_compute_the_same_bits(name, limit):
     whole, parts = built(name, longest=ONE_PIECE), built(name, longest=limit)
     given = drawn(program)
     for function in program.functions:
-        assert computed(parts, function.name, given) == computed(whole, function.name, given)
+        assert computed(parts, function, given) == computed(whole, function, given)
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
@@ -87,7 +100,7 @@ def test_parts_of_programs_written_by_hand(name):
     whole, parts = built(name, longest=ONE_PIECE), built(name, longest=2)
     given = drawn(program)
     for function in program.functions:
-        assert computed(parts, function.name, given) == computed(whole, function.name, given)
+        assert computed(parts, function, given) == computed(whole, function, given)
 
 
 @pytest.mark.parametrize("limit", [2, 10, 50])
@@ -159,7 +172,7 @@ def test_both_forms_are_the_same_bits(name, limit):
         symbol = compiled.library[f"{name}_prepared_{function.name}"]
         symbol.argtypes = [ctypes.c_double, *[ctypes.c_void_p] * 4]
         status = symbol(t, state, given_, model, result)
-        simple = computed(compiled, function.name, given)
+        simple = computed(compiled, function, given)
         assert simple == (bytes(result)[: 8 * size] if status == 0 else simple)
         assert (status != 0) == isinstance(simple, str)
 
@@ -172,19 +185,18 @@ def test_a_batch_is_its_states_one_by_one(name, limit):
         t, states, inputs, parameters = drawn(program, count)
         model = compiled.model(parameters)
         for function in program.functions:
-            found, status = compiled.batch(function.name, t, states, inputs, model=model)
+            columns = rows(function, states, inputs)
+            found, status = compiled.batch(function.name, t, *columns, model=model)
             failed = 0
             for k in range(count):
                 try:
-                    alone = compiled.call(function.name, t, states[:, k], inputs[:, k], parameters)
+                    one = alone(compiled, function, (t, states, inputs, parameters), k)
                 except CheckError:
                     failed = 1
                     assert np.isnan(found[:, k]).all()
                     continue
-                size = np.abs(alone).max(initial=1.0)
-                np.testing.assert_allclose(
-                    found[:, k], alone.ravel(), rtol=1e-11, atol=1e-12 * size
-                )
+                size = np.abs(one).max(initial=1.0)
+                np.testing.assert_allclose(found[:, k], one.ravel(), rtol=1e-11, atol=1e-12 * size)
             assert status == failed
 
 
@@ -196,10 +208,12 @@ def test_batches_of_programs_written_by_hand(name):
     model = compiled.model(parameters)
     named = {"time": [t], "parameters": parameters}
     for function in program.functions:
-        found, status = compiled.batch(function.name, t, states, inputs, model=model)
+        columns = rows(function, states, inputs)
+        found, status = compiled.batch(function.name, t, *columns, model=model)
         assert status == 0
         for k in range(40):
-            given = named | {"state": states[:, k], "inputs": inputs[:, k]}
+            taken = [a for a in function.arguments if a in ROWS]
+            given = named | {a: c[:, k] for a, c in zip(taken, columns, strict=True)}
             expected = call(program, function.name, given, FLOAT)
             np.testing.assert_allclose(found[:, k], expected, rtol=1e-12, atol=1e-13)
 
@@ -228,8 +242,8 @@ def test_an_angle_out_of_range_is_right_in_a_batch(far):
     found, status = compiled.batch("outputs", t, states, inputs, model=compiled.model(parameters))
     assert status == 0
     for k in range(33):
-        alone = compiled.call("outputs", t, states[:, k], inputs[:, k], parameters)
-        np.testing.assert_allclose(found[:, k], alone, rtol=1e-15)
+        one = compiled.call("outputs", t, states[:, k], inputs[:, k], parameters)
+        np.testing.assert_allclose(found[:, k], one, rtol=1e-15)
 
 
 def test_an_unprepared_program_renders_too():
@@ -239,7 +253,7 @@ def test_an_unprepared_program_renders_too():
     given = drawn(program)
     for function in program.functions:
         np.testing.assert_allclose(
-            np.frombuffer(computed(plain, function.name, given)),
-            np.frombuffer(computed(built(name), function.name, given)),
+            np.frombuffer(computed(plain, function, given)),
+            np.frombuffer(computed(built(name), function, given)),
             rtol=1e-13,
         )

@@ -103,10 +103,13 @@ def main_program(name):
     """A C program that calls every function of a fixture; its exit code adds up the statuses."""
     program, stem = PROGRAMS[name], prefix(name)
     _, state, inputs, _ = arguments(program, seed=0)
+    passed = {"time": "0", "accelerations": "state"}
     calls = [
-        f"    status += (int){stem}_{form}{f.name}({count}0, state, inputs, &{of}, result);"
+        f"    status += (int){stem}_{form}{f.name}("
+        + count
+        + ", ".join([*({**passed, "parameters": of}.get(a, a) for a in f.arguments), "result);"])
         for f in program.functions
-        for form, count, of in (("", "", "p"), ("prepared_", "", "m"), ("batch_", "1, ", "m"))
+        for form, count, of in (("", "", "&p"), ("prepared_", "", "&m"), ("batch_", "1, ", "&m"))
     ]
     return MAIN.format(
         name=name,

@@ -52,7 +52,8 @@ def given(of, free):
         ]
     names = [p.name for p in free]
     chosen = [v for p, v in zip(of.parameters, values, strict=True) if p.name in names]
-    return {"time": [t], "state": state, "inputs": inputs, "parameters": chosen}
+    rows = {"state": state, "accelerations": state, "inputs": inputs}
+    return rows | {"time": [t], "parameters": chosen}
 
 
 def values(of, function, free):
@@ -100,7 +101,7 @@ def depends(expression, known):
         case Value(name):
             return known[name]
         case Read(argument, _):
-            return argument in ("time", "state", "inputs")
+            return argument in ("time", "state", "accelerations", "inputs")
     return False
 
 

@@ -87,14 +87,15 @@ class _Work:
                 self.pivots.append((self.values[pivot.name], self.node(scale)))
             case Solve(names, matrix, right):
                 entries = tuple(self.node(e) for e in (*matrix, *right))
-                self.values.update(zip(names, self._solved(entries, len(names)), strict=True))
+                solution = self._solved(entries, statement.size, len(names))
+                self.values.update(zip(names, solution, strict=True))
 
-    def _solved(self, entries: tuple[Node, ...], size: int) -> list[Node]:
-        """The solution of a system; as it can fail it depends on more than its entries."""
+    def _solved(self, entries: tuple[Node, ...], size: int, count: int) -> list[Node]:
+        """The solutions of a system; as it can fail these depend on more than its entries."""
         graph = self.target.graph
         system = graph.make("system", entries, size)
         system.leaves |= graph.symbol("a system").leaves
-        return [graph.make("solved", (system,), row) for row in range(size)]
+        return [graph.make("solved", (system,), row) for row in range(count)]
 
     def node(self, expression: Expression) -> Node:
         """The node of an expression."""

@@ -14,6 +14,7 @@ from eomgen.render.lowered import atoms
 from eomgen.render.names import escaped, prefix
 from eomgen.render.routines import Routine, routine
 
+WAVES = ("pair", "sine", "cosine")
 LONGEST_FORMULA = 60  # characters of a comment
 
 
@@ -98,8 +99,9 @@ def interface(program: Program, dialect: Dialect) -> dict[str, Any]:
         "prepare": prepare,
         "constants": _constants(program),
         "operators": tuple(o for o in OPERATORS if o in used),
-        "solve_sizes": tuple(sorted({len(s.names) for s in statements if isinstance(s, Solve)})),
+        "solve_sizes": tuple(sorted({s.size for s in statements if isinstance(s, Solve)})),
         "pivots": any(f.can_fail for f in functions),
+        "in_motion": any("accelerations" in f.takes for f in functions),
     }
 
 
@@ -125,9 +127,11 @@ def c(subject: Program | Code) -> dict[str, object]:
     code = _code(subject)
     program = code.program
     context = interface(program, replace(C, lanes=code.style.batch, longest=code.style.longest))
-    waves = _waves(context["functions"], context["prepare"])
-    own_waves = bool(waves) and (code.style.fast_trig or code.style.batch)
+    waves = _waves([*context["functions"], *filter(None, [context["prepare"]])])
+    lane_waves = _lane_waves(context["functions"])
+    own_waves = bool(lane_waves or (waves and code.style.fast_trig))
     used = {*context["operators"], *(["abs"] if context["pivots"] or own_waves else [])}
+    used |= {"sin", "cos"} if waves and code.style.fast_trig else set()
     calls = [(C.calls[o], f, OPERATORS[o]) for o, f in C_FUNCTIONS.items() if o in used]
     unknown = tuple(v.name for v in program.parameters if v.value is None)
     open_codes = dict(zip(unknown, escaped(unknown, C.reserved), strict=True))
@@ -135,6 +139,7 @@ def c(subject: Program | Code) -> dict[str, object]:
         "fast_trig": code.style.fast_trig,
         "batch": code.style.batch,
         "waves": waves,
+        "lane_waves": lane_waves,
         "own_waves": own_waves,
         "math": tuple(calls),
         "open_codes": tuple(open_codes.values()),  # arguments of the function that sets parameters
@@ -146,11 +151,18 @@ def c(subject: Program | Code) -> dict[str, object]:
     }
 
 
-def _waves(functions: Iterable[Routine], prepare: Routine | None) -> tuple[str, ...]:
-    """The kinds of steps that compute a sine or cosine."""
-    everything = [*functions, *([] if prepare is None else [prepare])]
-    kinds = {s.kind for f in everything for body in (f.body, *f.parts) for s in body.steps}
-    return tuple(kind for kind in ("pair", "sine", "cosine") if kind in kinds)
+def _waves(functions: Iterable[Routine]) -> tuple[str, ...]:
+    """The kinds of steps that compute a sine or cosine at one state."""
+    found = {s.kind for f in functions for body in (f.body, *f.parts) for s in body.steps}
+    return tuple(kind for kind in WAVES if kind in found)
+
+
+def _lane_waves(functions: Iterable[Routine]) -> tuple[str, ...]:
+    """The same in batches."""
+    lanes = [each for f in functions for each in f.lanes]
+    first = {wave.kind for each in lanes for wave in each.waves}
+    found = first | {step.kind for each in lanes for step in each.body.steps}
+    return tuple(kind for kind in WAVES if kind in found)
 
 
 def _c_constant(value: sp.Expr) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from eomgen.program import (
+    ARGUMENTS,
     OPERATORS,
     Apply,
     Assign,
@@ -24,8 +25,8 @@ from eomgen.render.names import escaped, prefix
 from eomgen.render.parts import Part, divided
 
 COUNTED = {"add": "+", "subtract": "-", "negate": "-", "multiply": "*", "divide": "/"}
-ARGUMENTS = ("time", "state", "inputs", "parameters", "constants")
-ROWS = ("state", "inputs")  # arguments that differ between the states of a batch
+READ = (*ARGUMENTS, "constants")
+ROWS = ("state", "accelerations", "inputs")  # what differs between the states of a batch
 WAVE_KINDS = {"sin": "sine", "cos": "cosine"}
 WORK = "work"  # the array of values that cross between the parts of a function
 WAVES = "waves"  # the array of sines and cosines of a batch
@@ -57,6 +58,7 @@ class Step:
     values: tuple[tuple[str, int], ...] = ()  # of a solve: the names that are read, and where
     matrix: tuple[str, ...] = ()
     right: tuple[str, ...] = ()
+    size: int = 0  # of a solve: the number of equations
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,7 @@ class Body:
     arguments: tuple[Argument, ...]
     steps: tuple[Step, ...]
     results: tuple[tuple[int, str], ...]  # where each goes, and what
-    uses: tuple[str, ...]  # which of `ARGUMENTS` and `WORK` are read
+    uses: tuple[str, ...]  # which of `READ` and `WORK` are read
 
 
 @dataclass(frozen=True)
@@ -114,7 +116,8 @@ class Routine:
     size: int  # the number of results
     operators: frozenset[str]
     operations: str  # such as `3 +  5 *  1 sin`
-    uses: tuple[str, ...]  # which of `ARGUMENTS` are read
+    takes: tuple[str, ...]  # which of `ARGUMENTS` a caller passes
+    uses: tuple[str, ...]  # which of these are read
     can_fail: bool  # a pivot is checked
 
 
@@ -136,6 +139,7 @@ def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
         len(lowered.results),
         frozenset(operations(lowered)),
         _counted(lowered),
+        function.arguments,
         found.used,
         _checks_pivots(function),
     )
@@ -147,7 +151,7 @@ class _Survey:
 
     reads: tuple[Read, ...]
     values: tuple[str, ...]
-    used: tuple[str, ...]  # which of `ARGUMENTS`
+    used: tuple[str, ...]  # which of `READ`
 
 
 def _survey(trees: Iterable[Expression]) -> _Survey:
@@ -162,8 +166,8 @@ def _survey(trees: Iterable[Expression]) -> _Survey:
                 reads[atom.argument, atom.index] = atom
     found = {argument for argument, _ in reads}
     given = [r for r in reads.values() if r.argument != "time"]
-    given.sort(key=lambda r: (ARGUMENTS.index(r.argument), r.index))
-    return _Survey(tuple(given), tuple(values), tuple(a for a in ARGUMENTS if a in found))
+    given.sort(key=lambda r: (READ.index(r.argument), r.index))
+    return _Survey(tuple(given), tuple(values), tuple(a for a in READ if a in found))
 
 
 def _survey_of(part: Part) -> _Survey:
@@ -177,6 +181,7 @@ def _labels(program: Program) -> dict[str, list[str]]:
     return {
         "time": ["t"],
         "state": [v.name for v in program.coordinates + program.speeds],
+        "accelerations": [f"{v.name}'" for v in program.speeds],
         "inputs": [v.name for v in program.inputs],
         "parameters": [v.name for v in program.parameters],
         "constants": [f"c{i}" for i in range(len(prepared))],
@@ -200,7 +205,7 @@ def _own_names(program: Program, function: Function) -> frozenset[str]:
     for statement in function.statements:
         if isinstance(statement, Solve):
             place = statement.names[0]
-            own |= {f"matrix_of_{place}", f"solution_of_{place}", f"solve_{len(statement.names)}"}
+            own |= {f"matrix_of_{place}", f"solution_of_{place}", f"solve_{statement.size}"}
     return frozenset(own)
 
 
@@ -290,6 +295,7 @@ class _Text:
                     values=tuple((self.names[v], i) for v, i in places if v in self.names),
                     matrix=tuple(map(self.of, matrix)),
                     right=tuple(map(self.of, right)),
+                    size=statement.size,
                 )
 
 
@@ -312,5 +318,12 @@ def _counted(function: Function) -> str:
             sign = COUNTED.get(operator, operator)
             counts[sign] = counts.get(sign, 0) + applied[operator]
     parts = [f"{n} {sign}" for sign, n in counts.items()]
-    sizes = [len(s.names) for s in function.statements if isinstance(s, Solve)]
-    return ", ".join(parts + [f"L D L' of {n} x {n}" for n in sizes]) or "none"
+    loops = [s for s in function.statements if isinstance(s, Solve)]
+    return ", ".join(parts + [_loop(s) for s in loops]) or "none"
+
+
+def _loop(solve: Solve) -> str:
+    """A system in words."""
+    columns = len(solve.right) // solve.size
+    many = f" for {columns} right sides" if columns > 1 else ""
+    return f"L D L' of {solve.size} x {solve.size}{many}"
