@@ -16,6 +16,8 @@ import click
 from eomgen import __version__, files
 from eomgen.cli_chart import chart
 from eomgen.cli_common import (
+    code_options,
+    code_style,
     compensated_option,
     complain,
     decoded,
@@ -102,6 +104,7 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 @formulation_option
 @click.option("--baumgarte", metavar="ALPHA", help="Stabilise multipliers [1/s], only if asked.")
 @click.option("--step", metavar="H", help="The step [s] that caps ALPHA at 0.2/H.")
+@code_options
 @integrator_option
 @compensated_option
 @functions_option
@@ -116,6 +119,11 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
     if wishes["compensated"] and not integrators:
         raise UsageError("--compensated is how integrators add: say --integrator too")
     targets += ("c-steps",) if integrators else ()
+    with reporting(format_, files.shown(spec)):
+        choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
+        choice = replace(choice, notes=not NOTES.isdisjoint(targets))
+        style = code_style(targets, wishes)
+    study = studied(spec, format_, choice)
     wish = Wish(
         targets,
         wishes["language"],
@@ -124,11 +132,9 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
         functions,
         integrators,
         wishes["compensated"],
+        style,
     )
-    with reporting(format_, files.shown(spec)):
-        choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
-        choice = replace(choice, notes=not NOTES.isdisjoint(targets))
-    made = rendered(studied(spec, format_, choice), wish)
+    made = rendered(study, wish)
     if output == files.STANDARD:
         print_files(made)
         return

@@ -11,6 +11,8 @@ from typing import Any
 
 from eomgen.errors import EomgenError, UsageError
 from eomgen.integrators.steps import Steps
+from eomgen.program import Program
+from eomgen.render.code_context import Style, coded
 from eomgen.render.notes import Notes
 from eomgen.render.targets import TARGETS, Named, render
 from eomgen.render.templating import environment
@@ -29,6 +31,7 @@ class Wish:
     functions: tuple[str, ...] = ()  # of C and Python; (): the standard ones
     integrators: tuple[str, ...] = ()
     compensated: bool = False
+    style: Style = Style()
 
 
 def _notes(study: Study, wish: Wish) -> Named:
@@ -42,6 +45,11 @@ def _notes(study: Study, wish: Wish) -> Named:
 
 
 def _program(study: Study, wish: Wish) -> Named:
+    return coded(_chosen(study, wish), wish.style)
+
+
+def _chosen(study: Study, wish: Wish) -> Program:
+    """The program with the functions that were asked for, and those that integrators call."""
     steps = _steps(study, wish) if wish.integrators else None
     program = study.program if steps is None else steps.program
     if not wish.functions:

@@ -88,7 +88,7 @@ ALLOWED: dict[str, set[str]] = {
     "outputs": RECORDS
     | {"checks", "functions", "integrators", "output_links", "analysis", "render", "spec"}
     | {"stepping", "study"},
-    "cli_common": {"errors", "files", "functions", "outputs", "spec", "study", "wanted"},
+    "cli_common": {"errors", "files", "functions", "outputs", "render", "spec", "study", "wanted"},
     "cli_regressor": {"cli_common", "files", "functions", "study", "wanted"},
     "urdf": {"__init__", "errors", "spec"},
     "cli_import": {"cli_common", "errors", "files", "shelf", "spec", "urdf"},
