@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import ctypes
+import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,9 @@ import numpy as np
 from lab.build import COMPILERS, Source, library, present
 from lab.timing import STATES, Array, Entry
 from lab.trees import Tree
+
+
+COPIES = count()
 
 
 @dataclass(frozen=True)
@@ -26,6 +31,7 @@ class Contestant:
     driven: bool = True  # takes the inputs of driven joints only, else one a joint
     text: str = ""  # for setup()
     function: str = "run"
+    batch: bool = False  # takes all states at once, component by component
     compilers: dict[str, tuple[str, ...]] = field(default_factory=lambda: COMPILERS)
 
 
@@ -63,9 +69,18 @@ def to_absolute(tree: Tree) -> Array:
     return matrix
 
 
+def _loaded(contestant: Contestant, made: Path) -> Any:
+    """The library; one that is set up is a copy of its own, for its data are its own."""
+    if contestant.text:
+        own = made.with_name(f"run_{next(COPIES)}.so")
+        shutil.copy(made, own)
+        made = own
+    return ctypes.CDLL(str(made))
+
+
 def entry(contestant: Contestant, made: Path, given: Sample) -> Entry:
     """The library, loaded and set up, with the sample in its own coordinates."""
-    loaded = ctypes.CDLL(str(made))
+    loaded = _loaded(contestant, made)
     if contestant.text:
         status = loaded.setup(contestant.text.encode())
         assert status == 0, f"{contestant.variant}: setup answers {status}"
@@ -77,15 +92,18 @@ def entry(contestant: Contestant, made: Path, given: Sample) -> Entry:
     if not contestant.driven:
         inputs = np.zeros((STATES, n))
         inputs[:, list(given.tree.driven)] = given.inputs
-    arrays = [np.ascontiguousarray(a) for a in (states, inputs, np.zeros((STATES, n)))]
-    return Entry(loaded[contestant.function], *arrays)
+    arrays = (states, inputs, np.zeros((STATES, n)))
+    if contestant.batch:
+        arrays = tuple(a.T.reshape(1, -1) for a in arrays)
+    return Entry(loaded[contestant.function], *(np.ascontiguousarray(a) for a in arrays))
 
 
 def accelerations(contestant: Contestant, filled: Entry, tree: Tree) -> Array:
     """The results of an entry that has run, in the tree's coordinates."""
-    if not contestant.absolute:
-        return filled.results
-    return np.linalg.solve(to_absolute(tree), filled.results.T).T
+    results = filled.results
+    if contestant.batch:
+        results = results.reshape(-1, STATES).T
+    return np.linalg.solve(to_absolute(tree), results.T).T if contestant.absolute else results
 
 
 Maker = Callable[[Tree], Iterator[Contestant]]

@@ -40,18 +40,19 @@ def loop(folder: Path) -> Any:
 
 
 def nanoseconds(timer: Any, entry: Entry, rounds: int) -> float:
-    """One measurement."""
+    """One measurement: nanoseconds a state."""
     arrays = [
         argument
         for array in (entry.states, entry.inputs, entry.results)
         for argument in (array.ctypes.data, array.shape[1])
     ]
     address = ctypes.cast(entry.run, ctypes.c_void_p)
-    return float(timer(address, *arrays, len(entry.states), rounds))
+    time = timer(address, *arrays, len(entry.states), rounds)
+    return float(time) * len(entry.states) / STATES
 
 
 def minima(timer: Any, entries: Mapping[str, Entry], repeats: int = REPEATS) -> dict[str, float]:
-    """The least time of each entry [ns a call], all of them taking turns in random order."""
+    """The least time of each entry [ns a state], all of them taking turns in random order."""
     first = {name: nanoseconds(timer, entry, 4) for name, entry in entries.items()}
     rounds = {name: max(1, int(SAMPLE / (STATES * t))) for name, t in first.items()}
     best = dict.fromkeys(entries, float("inf"))

@@ -1,0 +1,28 @@
+"""Work in a child process that is ended when its time is over."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from pathlib import Path
+
+BENCHMARKS = Path(__file__).parents[1]
+
+
+def output_within(seconds: float, command: list[str]) -> str | None:
+    """What a command prints; None where it does not end in time.
+
+    Raises:
+        RuntimeError: it ends with an error, whose text is given.
+    """
+    path = os.pathsep.join([str(BENCHMARKS), str(BENCHMARKS.parent), os.environ.get("PYTHONPATH", "")])
+    environment = {**os.environ, "PYTHONPATH": path}
+    try:
+        done = subprocess.run(
+            command, capture_output=True, text=True, env=environment, timeout=seconds, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return None
+    if done.returncode:
+        raise RuntimeError(done.stderr[-2000:])
+    return done.stdout
