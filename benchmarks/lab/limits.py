@@ -9,17 +9,23 @@ from pathlib import Path
 BENCHMARKS = Path(__file__).parents[1]
 
 
-def output_within(seconds: float, command: list[str]) -> str | None:
+def output_within(seconds: float, command: list[str], folder: str | None = None) -> str | None:
     """What a command prints; None where it does not end in time.
 
     Raises:
         RuntimeError: it ends with an error, whose text is given.
     """
-    path = os.pathsep.join([str(BENCHMARKS), str(BENCHMARKS.parent), os.environ.get("PYTHONPATH", "")])
-    environment = {**os.environ, "PYTHONPATH": path}
+    path = [str(BENCHMARKS), str(BENCHMARKS.parent), os.environ.get("PYTHONPATH", "")]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path)}
     try:
         done = subprocess.run(
-            command, capture_output=True, text=True, env=environment, timeout=seconds, check=False
+            command,
+            capture_output=True,
+            text=True,
+            env=environment,
+            timeout=seconds,
+            check=False,
+            cwd=folder,
         )
     except subprocess.TimeoutExpired:
         return None

@@ -19,6 +19,7 @@ SECONDS = 120
 
 ADAPTER = """\
 #include "scene.h"
+#include <stdlib.h>
 
 static scene_params parameters;
 {model}
@@ -33,7 +34,9 @@ int setup(const char *text)
 
 void run(const double *state, const double *inputs, double *result)
 {{
-    {call};
+    if ({call}) {{
+        abort(); /* a mass matrix that is not positive: there is none among the scenes */
+    }}
 }}
 """
 PLAIN = {"model": "", "prepare": "", "call": "scene_accelerations(0, state, inputs, &parameters, result)"}
@@ -76,11 +79,10 @@ def files(text: str, options: tuple[str, ...]) -> dict[str, str]:
         Missing: the command line has no such option, refuses the scene, or takes two minutes.
     """
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "scene.yaml"
-        path.write_text(text, encoding="utf-8")
-        command = [sys.executable, "-m", "eomgen.cli", "generate", str(path), "-t", "c", *options]
+        Path(folder, "scene.yaml").write_text(text, encoding="utf-8")
+        command = [sys.executable, "-m", "eomgen.cli", "generate", "scene.yaml", "-t", "c"]
         try:
-            made = output_within(SECONDS, [*command, "-o", f"{folder}/out"])
+            made = output_within(SECONDS, [*command, *options, "-o", "out"], folder)
         except RuntimeError as error:
             raise Missing(str(error).strip().splitlines()[-1]) from error
         if made is None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from lab.build import Source, library
 
-STATES, REPEATS, SAMPLE = 64, 9, 2e6  # SAMPLE: nanoseconds that one measurement should last
+STATES, REPEATS, SAMPLE = 64, 25, 1e6  # SAMPLE: nanoseconds that one measurement should last
 TOLERANCE = 1e-11
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
