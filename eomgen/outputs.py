@@ -9,7 +9,7 @@ from math import ceil, log10
 from pathlib import Path
 from typing import Any
 
-from eomgen.errors import EomgenError
+from eomgen.errors import EomgenError, UsageError
 from eomgen.render.notes import Notes
 from eomgen.render.targets import TARGETS, Named, render
 from eomgen.render.templating import environment
@@ -25,6 +25,7 @@ class Wish:
     language: str = "en"
     templates: Path | None = None
     steps: bool = False
+    functions: tuple[str, ...] = ()  # of C and Python; (): the standard ones
 
 
 def _notes(study: Study, wish: Wish) -> Named:
@@ -38,7 +39,11 @@ def _notes(study: Study, wish: Wish) -> Named:
 
 
 def _program(study: Study, wish: Wish) -> Named:
-    return study.program
+    if not wish.functions:
+        return study.program
+    from eomgen.functions import table
+
+    return table.select(study.program, study.compiled, wish.functions)
 
 
 SUBJECTS: dict[str, Callable[[Study, Wish], Named]] = {
@@ -53,8 +58,10 @@ def rendered(study: Study, wish: Wish) -> dict[str, str]:
     """File name -> text for every target that was asked for.
 
     Raises:
-        UsageError: a template of the user is wrong.
+        UsageError: a template of the user is wrong, or a function is unknown.
     """
+    if wish.functions and not {"c", "python"} & {*wish.targets}:
+        raise UsageError("--functions: only C and Python have functions; add -t c or -t python")
     templates = environment(wish.templates)
     made: dict[str, str] = {}
     for target in dict.fromkeys(wish.targets):
@@ -124,7 +131,7 @@ def _text_summary(spec: str, study: Study) -> str:
     count = study.freedom
     freedom = f"{count} degree{'s' if count != 1 else ''} of freedom"
     said = "; ".join([freedom, *_linked_words(study), check_line(study.report, "en")])
-    return "\n    ".join([f"{spec}: {said}", *_initial_words(study)])
+    return "\n    ".join([f"{spec}: {said}", *_initial_words(study), *study.report.warnings])
 
 
 def _initial_words(study: Study) -> tuple[str, ...]:
@@ -156,9 +163,17 @@ def _json_summary(spec: str, study: Study) -> str:
             "power_balance": report.power,
             "terms": report.terms,
             "claims": report.claims,
+            **_warnings(study),
             **_linked_json(study),
         }
     )
+
+
+def _warnings(study: Study) -> dict[str, list[str]]:
+    """What is true and yet may surprise; a free scene without any says nothing."""
+    linked = () if study.links is None else study.links.scene.report.freedom.warnings
+    found = [*study.report.warnings, *linked]
+    return {"warnings": found} if found or study.links is not None else {}
 
 
 def _linked_json(study: Study) -> dict[str, Any]:
@@ -174,7 +189,6 @@ def _linked_json(study: Study) -> dict[str, Any]:
         "coordinates": freedom.coordinates,
         "minimal_coordinates": freedom.minimal_coordinates,
         "independent": list(freedom.basis.independent),
-        "warnings": list(freedom.warnings),
         "constraints": [to_json(card) for card in study.links.scene.report.cards],
     }
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from eomgen import compile
-from eomgen.checks import agreement, dimensions, expectations, mass, power, samples
-from eomgen.mechanics import lagrange
+from eomgen.checks import agreement, dimensions, expectations, gimbal, mass, power, samples
+from eomgen.mechanics import lagrange, speeds
 from eomgen.mechanics.equations import Derivation
 from eomgen.model import Model
 from eomgen.program import Program
@@ -33,6 +33,7 @@ class Report:
     claims: int  # of the author, all found to hold
     projected: bool  # bodies were projected; else both routes start from the author's energies
     formulations: tuple[str, ...] = ()  # of a linked scene, found to agree
+    warnings: tuple[str, ...] = ()  # what is true and yet may surprise
 
 
 @dataclass(frozen=True)
@@ -47,10 +48,15 @@ class Study:
     links: LinkedStudy | None = None  # where the scene has constraints
 
     @property
+    def compiled(self) -> compile.Machine:
+        """What the program was made of: of a linked scene, the chosen formulation."""
+        return self.machine if self.links is None else self.links.chosen.machine
+
+    @property
     def freedom(self) -> int:
         """The degrees of freedom."""
         if self.links is None:
-            return len(self.model.coordinates)
+            return len(speeds.symbols(self.model))
         return self.links.scene.report.freedom.degrees_of_freedom
 
 
@@ -78,6 +84,16 @@ def of_model(model: Model, wanted: Wanted = AUTO) -> Study:
     return Study(model, derivation, machine, compile.program(machine), report)
 
 
+def machine_of(text: str | bytes, file: str, wanted: Wanted = AUTO) -> compile.Machine:
+    """The scene on the graph, for whoever has a check of its own; what is linked is studied.
+
+    Raises:
+        SpecError, UsageError, CheckError: as `of_text`.
+    """
+    model = read(text, file)
+    return of_model(model, wanted).compiled if model.constraints else compile.machine_of(model)
+
+
 def _linked(links: LinkedStudy) -> Study:
     """The study of a linked scene."""
     report = Report(
@@ -87,6 +103,7 @@ def _linked(links: LinkedStudy) -> Study:
         claims=links.claims,
         projected=bool(links.derivation.model.bodies),
         formulations=links.formulations,
+        warnings=gimbal.warnings(links.derivation.model),
     )
     model = links.derivation.model
     return Study(model, links.derivation, links.machine, links.program(), report, links)
@@ -106,4 +123,5 @@ def checked(derivation: Derivation, machine: compile.Machine) -> Report:
         power=power.balance(machine, drawn),
         claims=expectations.check(machine, drawn),
         projected=bool(derivation.model.bodies),
+        warnings=gimbal.warnings(derivation.model),
     )

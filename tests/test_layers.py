@@ -24,6 +24,7 @@ ALLOWED: dict[str, set[str]] = {
     "compile_contacts": RECORDS | {"algebra", "mechanics", "compile"},
     "analysis": RECORDS | {"algebra", "mechanics", "compile"},
     "checks": RECORDS | {"algebra", "mechanics", "compile", "analysis", "formulation"},
+    "functions": RECORDS | {"algebra", "analysis", "checks", "compile", "mechanics", "render"},
     "wanted": {"errors"},
     "formulation": RECORDS | {"wanted", "algebra", "analysis", "compile", "mechanics"},
     "reactions": RECORDS | {"algebra", "formulation", "mechanics"},
@@ -45,7 +46,8 @@ ALLOWED: dict[str, set[str]] = {
     "evaluate_linked": RECORDS
     | {"compile_contacts", "evaluate_contacts"}
     | {"algebra", "evaluate", "interpreter", "reactions", "states", "study_linked"},
-    "answers": RECORDS | {"evaluate_joints", "evaluate", "evaluate_linked", "states", "study"},
+    "answers": RECORDS
+    | {"evaluate_joints", "evaluate", "evaluate_linked", "functions", "states", "study"},
     "render": RECORDS | {"algebra", "mechanics"},
     "numerics": RECORDS | {"render", "interpreter"},
     "states": RECORDS | {"mechanics"},
@@ -54,11 +56,17 @@ ALLOWED: dict[str, set[str]] = {
     "shelf": {"errors", "files", "render", "spec"},
     "rest": RECORDS | {"analysis", "mechanics", "render", "spec", "states"},
     "output_links": {"analysis", "formulation", "render"},
-    "outputs": RECORDS | {"output_links", "analysis", "study", "render", "checks", "spec"},
-    "cli_common": {"errors", "files", "outputs", "spec", "study", "wanted"},
+    "outputs": RECORDS
+    | {"output_links", "analysis", "functions", "study", "render", "checks", "spec"},
+    "cli_common": {"errors", "files", "functions", "outputs", "spec", "study", "wanted"},
+    "cli_regressor": {"cli_common", "files", "functions", "study", "wanted"},
+    "urdf": {"__init__", "errors", "spec"},
+    "cli_import": {"cli_common", "errors", "files", "shelf", "spec", "urdf"},
     "cli": {
         "__init__",
+        "cli_import",
         "cli_common",
+        "cli_regressor",
         "errors",
         "files",
         "wanted",
