@@ -13,7 +13,10 @@ from lab.frames import aligned, is_straight, plain
 from lab.trees import Tree
 
 SPATIAL = {"articulated": casadi_articulated.solve, "composite": casadi_composite.solve}
-PLANAR = {"planar articulated": casadi_planar.articulated, "planar composite": casadi_planar.composite}
+PLANAR = {
+    "planar articulated": casadi_planar.articulated,
+    "planar composite": casadi_planar.composite,
+}
 
 # inlined where nothing is null, so that the generated tests for null pointers cost nothing
 ADAPTER = """\
@@ -49,6 +52,20 @@ def functions(tree: Tree) -> dict[str, ca.Function]:
     if tree.planar:
         made |= {name: casadi_planar.function(tree, solver) for name, solver in PLANAR.items()}
     return made
+
+
+def masses(count: int) -> ca.Function:
+    """The chain of masses, springs and dampers of `scenes.chain_of_masses`."""
+    state, force = ca.SX.sym("x", 2 * count), ca.SX.sym("F")
+    place, rate = state[:count], state[count:]
+    stiffness = [float(f"1{i % 5}0") for i in range(count)]
+    damping = [float(f"0.{i % 3 + 1}") for i in range(count)]
+    mass = [float(f"1.{i % 7 + 1}") for i in range(count)]
+    longer = place - ca.vertcat(0, place[:-1])
+    faster = rate - ca.vertcat(0, rate[:-1])
+    pull = ca.DM(stiffness) * longer + ca.DM(damping) * faster
+    total = ca.vertcat(pull[1:], force) - pull
+    return ca.Function("fd", [state, force], [total / ca.DM(mass)])
 
 
 def contestants(tree: Tree) -> Iterator[Contestant]:

@@ -16,7 +16,6 @@ from lab.build import COMPILERS, Source, library, present
 from lab.timing import STATES, Array, Entry
 from lab.trees import Tree
 
-
 COPIES = count()
 
 

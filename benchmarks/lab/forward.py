@@ -30,7 +30,7 @@ def everyone(name: str, tree: Tree, missing: list[str]) -> list[Contestant]:
         *by_hand.contestants(tree),
         *engines.pinocchio(tree),
         *engines.mujoco(tree),
-        *pydy_c.contestants(name),
+        *pydy_c.contestants(name, missing),
     ]
 
 
@@ -96,3 +96,13 @@ def _ratio(c: Column, first: str, second: str) -> str:
     if first not in c.times or second not in c.times:
         return "-"
     return f"{c.times[first][0] / c.times[second][0]:.2f}"
+
+
+def winners(columns: dict[str, Column]) -> list[str]:
+    """Which way of writing it, and which compiler, each number is from."""
+    rows = list(dict.fromkeys(row for c in columns.values() for row in c.times))
+    return [
+        f"* {row}: "
+        + "; ".join(f"{name}: {c.times[row][1]}" for name, c in columns.items() if row in c.times)
+        for row in rows
+    ]

@@ -39,7 +39,11 @@ void run(const double *state, const double *inputs, double *result)
     }}
 }}
 """
-PLAIN = {"model": "", "prepare": "", "call": "scene_accelerations(0, state, inputs, &parameters, result)"}
+PLAIN = {
+    "model": "",
+    "prepare": "",
+    "call": "scene_accelerations(0, state, inputs, &parameters, result)",
+}
 PREPARED = {
     "model": "static scene_model model;",
     "prepare": "scene_prepare(&parameters, &model);",

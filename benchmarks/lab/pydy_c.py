@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 
 from lab.build import Source
 from lab.contestants import Contestant
@@ -75,11 +74,16 @@ def text(tree: Tree) -> str:
     return source.replace("void evaluate", "static void evaluate") + "\n/* adapter */\n" + adapter
 
 
-def contestants(column: str) -> list[Contestant]:
+def contestants(column: str, missing: list[str]) -> list[Contestant]:
     """PyDy's C of a column, where it is derived within two minutes."""
     script = "from lab import pydy_c, trees; print(pydy_c.text(trees.COLUMNS[%r]()))"
-    made = output_within(SECONDS, [sys.executable, "-c", script % column])
+    try:
+        made = output_within(SECONDS, [sys.executable, "-c", script % column])
+    except RuntimeError as error:
+        missing.append(f"PyDy, {column}: {str(error).strip().splitlines()[-1]}")
+        return []
     if made is None:
+        missing.append(f"PyDy, {column}: not derived within {SECONDS} s")
         return []
     equations, adapter = made.split("\n/* adapter */\n")
     source = Source({"run.c": adapter, "equations.c": equations}, "run.c")

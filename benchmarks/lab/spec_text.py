@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt
 
-from lab.trees import Link, Tree
 from scenes import cart_with_pendulums
+
+from lab.trees import Link, Tree
 
 INERTIA = ("xx", "yy", "zz", "xy", "xz", "yz")
 
@@ -60,7 +61,9 @@ def _frames(tree: Tree) -> Iterator[Frame]:
         body = len(bodies)
         bodies[i] = body
         parent = tree.links[joints[0]].parent
-        yield Frame(bodies.get(parent), tuple(joints), _at(tree, joints, body), _turns(tree, joints))
+        yield Frame(
+            bodies.get(parent), tuple(joints), _at(tree, joints, body), _turns(tree, joints)
+        )
         joints = []
 
 

@@ -11,12 +11,13 @@ from sympy.physics.mechanics import (
     Point,
     ReferenceFrame,
     RigidBody,
+    Vector,
     dynamicsymbols,
     inertia,
 )
 from sympy.physics.mechanics.models import n_link_pendulum_on_cart
 
-from lab.trees import Link, Tree
+from lab.trees import Link, Numbers, Tree
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,11 @@ class Kane:
     constants: list[sp.Symbol]
     values: list[float]
     upside_down: bool = False  # angles count from the upward vertical
+
+    @property
+    def arguments(self) -> list[sp.Expr]:
+        """What is a function of time."""
+        return [*self.coordinates, *self.speeds, *self.inputs]
 
 
 def derive(tree: Tree) -> Kane:
@@ -99,21 +105,14 @@ def _spatial(tree: Tree) -> Kane:
 def _add(scene: _Scene, i: int, link: Link, driven: bool) -> None:
     """A joint with its frame and points, and the body behind it."""
     parent = scene.world if link.parent < 0 else scene.frames[link.parent]
-    before = scene.origin if link.parent < 0 else scene.joints[link.parent]
     axis = parent.x * link.axis[0] + parent.y * link.axis[1] + parent.z * link.axis[2]
     axis = axis / sp.sqrt(sum(a * a for a in link.axis))
     frame = ReferenceFrame(f"B{i}")
-    place = _components(scene, f"r{i}", link.place, parent)
-    if link.joint == "slide":
-        frame.orient_axis(parent, axis, 0)
-        place += scene.q[i] * axis
-    else:
-        frame.orient_axis(parent, axis, scene.q[i])
-        frame.set_ang_vel(parent, scene.u[i] * axis)
-    joint = before.locatenew(f"P{i}", place)
-    _set_velocity(scene, joint, before, parent, link, i)
+    frame.orient_axis(parent, axis, 0 if link.joint == "slide" else scene.q[i])
+    scene.joints.append(_joint(scene, i, link, axis))
     scene.frames.append(frame)
-    scene.joints.append(joint)
+    if link.joint == "turn":
+        frame.set_ang_vel(parent, scene.u[i] * axis)
     if link.mass:
         scene.bodies.append(_body(scene, i, link))
     if driven:
@@ -121,21 +120,23 @@ def _add(scene: _Scene, i: int, link: Link, driven: bool) -> None:
         scene.loads += [(frame, torque), (parent, -torque)]
 
 
-def _set_velocity(
-    scene: _Scene, joint: Point, before: Point, parent: ReferenceFrame, link: Link, i: int
-) -> None:
-    if link.joint == "slide":
-        moved = joint.pos_from(before).dt(parent).subs(scene.q[i].diff(), scene.u[i])
-        joint.set_vel(parent, moved)
-        joint.set_vel(scene.world, joint.pos_from(scene.origin).dt(scene.world).subs(
-            {q.diff(): u for q, u in zip(scene.q, scene.u, strict=True)}
-        ))
-    else:
+def _joint(scene: _Scene, i: int, link: Link, axis: Vector) -> Point:
+    """The point of a joint, with its velocity."""
+    parent = scene.world if link.parent < 0 else scene.frames[link.parent]
+    before = scene.origin if link.parent < 0 else scene.joints[link.parent]
+    place = _components(scene, f"r{i}", link.place, parent)
+    if link.joint == "turn":
+        joint = before.locatenew(f"P{i}", place)
         joint.v2pt_theory(before, scene.world, parent)
+        return joint
+    joint = before.locatenew(f"P{i}", place + scene.q[i] * axis)
+    joint.set_vel(parent, scene.u[i] * axis)
+    joint.v1pt_theory(before, scene.world, parent)
+    return joint
 
 
-def _components(scene: _Scene, name: str, values: tuple[object, ...], frame: ReferenceFrame):
-    named = [scene.constant(f"{name}{a}", float(v)) if v else 0 for a, v in zip("xyz", values)]
+def _components(scene: _Scene, name: str, values: Numbers, frame: ReferenceFrame) -> Vector:
+    named = [scene.constant(f"{name}_{i}", float(v)) if v else 0 for i, v in enumerate(values)]
     return named[0] * frame.x + named[1] * frame.y + named[2] * frame.z
 
 
@@ -151,3 +152,27 @@ def _body(scene: _Scene, i: int, link: Link) -> RigidBody:
     scene.loads.append((centre, -mass * scene.gravity * scene.world.z))
     tensor = inertia(frame, xx, yy, zz, xy, yz, xz)
     return RigidBody(f"body{i}", centre, frame, mass, (tensor, centre))
+
+
+def masses(count: int) -> Kane:
+    """The chain of masses, springs and dampers."""
+    q, u = list(dynamicsymbols(f"x:{count}")), list(dynamicsymbols(f"v:{count}"))
+    world, origin, force = ReferenceFrame("N"), Point("O"), dynamicsymbols("F")
+    origin.set_vel(world, 0)
+    names = [sp.symbols(f"{n}:{count}") for n in "mkc"]
+    pulls = [
+        k * (q[i] - (q[i - 1] if i else 0)) + c * (u[i] - (u[i - 1] if i else 0))
+        for i, (_, k, c) in enumerate(zip(*names, strict=True))
+    ]
+    bodies, loads = [], []
+    for i, mass in enumerate(names[0]):
+        point = origin.locatenew(f"P{i}", q[i] * world.x)
+        point.set_vel(world, u[i] * world.x)
+        bodies.append(Particle(f"B{i}", point, mass))
+        beyond = pulls[i + 1] if i + 1 < count else force
+        loads.append((point, (beyond - pulls[i]) * world.x))
+    equations = [a.diff() - b for a, b in zip(q, u, strict=True)]
+    kane = KanesMethod(world, q_ind=q, u_ind=u, kd_eqs=equations)
+    kane.kanes_equations(bodies, loads)
+    constants = [s for group in names for s in group]
+    return Kane(kane.mass_matrix, kane.forcing, q, u, [force], constants, [])
