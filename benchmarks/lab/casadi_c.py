@@ -54,20 +54,6 @@ def functions(tree: Tree) -> dict[str, ca.Function]:
     return made
 
 
-def masses(count: int) -> ca.Function:
-    """The chain of masses, springs and dampers of `scenes.chain_of_masses`."""
-    state, force = ca.SX.sym("x", 2 * count), ca.SX.sym("F")
-    place, rate = state[:count], state[count:]
-    stiffness = [float(f"1{i % 5}0") for i in range(count)]
-    damping = [float(f"0.{i % 3 + 1}") for i in range(count)]
-    mass = [float(f"1.{i % 7 + 1}") for i in range(count)]
-    longer = place - ca.vertcat(0, place[:-1])
-    faster = rate - ca.vertcat(0, rate[:-1])
-    pull = ca.DM(stiffness) * longer + ca.DM(damping) * faster
-    total = ca.vertcat(pull[1:], force) - pull
-    return ca.Function("fd", [state, force], [total / ca.DM(mass)])
-
-
 def contestants(tree: Tree) -> Iterator[Contestant]:
     """The C that CasADi writes, constants folded."""
     for variant, function in functions(tree).items():

@@ -11,8 +11,7 @@ import sys
 from collections.abc import Callable
 from time import process_time
 
-from scenes import chain_of_masses
-
+from lab import masses
 from lab.trees import Tree, arm, cart, skew_arm, walker
 
 ENOUGH = 2.0  # seconds after which a derivation is not repeated
@@ -27,7 +26,7 @@ TREES: dict[str, Callable[[int], Tree]] = {
 def _spec(scene: str, count: int) -> str:
     from lab.spec_text import spec
 
-    return chain_of_masses(count) if scene == "masses" else spec(TREES[scene](count))
+    return masses.spec(count) if scene == "masses" else spec(TREES[scene](count))
 
 
 def ours(scene: str, count: int) -> Callable[[], str]:
@@ -100,7 +99,7 @@ def casadi(solver: str) -> Callable[[str, int], Callable[[], str]]:
 
         def derive() -> str:
             if scene == "masses":
-                return casadi_c.generated(casadi_c.masses(count))
+                return casadi_c.generated(masses.sx_function(count))
             tree = TREES[scene](count)
             if tree.planar:
                 made = casadi_planar.function(tree, casadi_c.PLANAR[f"planar {solver}"])

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt
 
-from scenes import cart_with_pendulums
-
 from lab.trees import Link, Tree
 
 INERTIA = ("xx", "yy", "zz", "xy", "xz", "yz")
@@ -17,7 +15,7 @@ INERTIA = ("xx", "yy", "zz", "xy", "xz", "yz")
 def spec(tree: Tree) -> str:
     """The spec of a tree; its coordinates are q0, q1, ... in the tree's order."""
     if tree.planar:
-        return cart_with_pendulums(len(tree.links) - 1)
+        return _cart(tree)
     frames = list(_frames(tree))
     heavy = [link for link in tree.links if link.mass]
     lines = [
@@ -36,6 +34,34 @@ def spec(tree: Tree) -> str:
         *(line for i, frame in enumerate(frames) for line in _body(i, frame)),
         "moments:",
         *(_moment(i, tree, frames) for i in tree.driven),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _cart(tree: Tree) -> str:
+    """As on a blackboard: points by their positions, angles from the vertical."""
+    count = len(tree.links) - 1
+    pendulums = range(1, count + 1)
+    lines = [
+        "eom: 1",
+        f"system: {tree.name}",
+        "space: plane",
+        "gravity: [0, -g]",
+        "parameters:",
+        "  g: 9.81 m/s^2",
+        *(f"  m{i}: {_decimal(link.mass)} kg" for i, link in enumerate(tree.links)),
+        *(f"  l{i}: {_decimal(-tree.links[i].com[1])} m" for i in pendulums),
+        "coordinates:",
+        "  s: m",
+        *(f"  q{i}: rad" for i in pendulums),
+        "inputs: {F: N}",
+        "points:",
+        "  P0: [s, 0]",
+        *(f"  P{i}: P{i - 1} + l{i}*[sin(q{i}), -cos(q{i})]" for i in pendulums),
+        "bodies:",
+        *(f"  B{i}: {{mass: m{i}, at: P{i}}}" for i in range(count + 1)),
+        "forces:",
+        "  - {on: P0, force: [F, 0]}",
     ]
     return "\n".join(lines) + "\n"
 

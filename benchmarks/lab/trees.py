@@ -6,8 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
-from scenes import masses_and_lengths
-
 Numbers = tuple[Fraction, ...]
 X, Y, Z = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 GRAVITY = Fraction("9.81")
@@ -75,7 +73,8 @@ def limb(index: int, parent: int, axis: tuple[int, int, int]) -> Link:
 
 def cart(count: int) -> Tree:
     """A cart with a chain of pendulums of point masses, in the x-y plane, y upwards."""
-    masses, lengths = masses_and_lengths(count)
+    masses = [f"1.{i % 7 + 1}" for i in range(count + 1)]  # no two neighbours alike
+    lengths = [f"0.{i % 5 + 3}5" for i in range(count)]
     place = nothing = decimals(0, 0, 0)
     links = [Link(-1, "slide", X, nothing, Fraction(masses[0]), nothing, nothing * 2)]
     for i, length in enumerate(lengths):
