@@ -99,7 +99,7 @@ def contestants(tree: Tree, missing: list[str]) -> Iterator[Contestant]:
     text = spec(tree)
     for row in ROWS:
         try:
-            made = files(text, row.options)
+            made = files(text, (*row.options, "--functions", "accelerations"))
         except Missing as reason:
             missing.append(f"{row.name}, {tree.name}: {reason}")
             continue
