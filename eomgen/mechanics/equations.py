@@ -121,3 +121,8 @@ def virtual_name(coordinate: str) -> str:
 def multiplier_name(row: str) -> str:
     """The name of the symbol of a row's Lagrange multiplier."""
     return f"lambda {row}"
+
+
+def reaction_name(letter: str, body: str) -> str:
+    """The name of the symbol of a force or moment that holds a body."""
+    return f"reaction {letter} {body}"
