@@ -153,7 +153,7 @@ def _value(carried: Mapping[str, Wrench[Form]], hinge: Hinge, share: Share) -> F
 def by_resultants(kinematics: Closed) -> FreeBodies:
     """With the resultants of the constraint forces on each body as unknowns."""
     rows = free_bodies_rows.of(
-        kinematics, loads.applied(kinematics).on_bodies, {}, _solid(kinematics)
+        kinematics, loads.applied(kinematics).on_bodies, {}, free_bodies_rows.solid(kinematics)
     )
     symbols = [sp.Symbol(reaction_name(_letter(r), r.body), real=True) for r in rows]
     held = tuple(
@@ -178,8 +178,3 @@ def by_resultants(kinematics: Closed) -> FreeBodies:
 
 def _letter(row: BodyRow) -> str:
     return f"{'L' if row.is_moment else 'R'}{row.axis}"
-
-
-def _solid(kinematics: Closed) -> frozenset[str]:
-    """Bodies with inertia against turning."""
-    return frozenset(b.name for b in kinematics.model.bodies if kinematics.spin(b) is not None)

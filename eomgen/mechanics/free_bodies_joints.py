@@ -204,20 +204,17 @@ def _line(kinematics: Closed, held: Hinge, basis: Sequence[Vector[Form]]) -> Vec
     return unit(arm)
 
 
-def _minus(vector: Vector[Form]) -> Form:
-    return normal.number(vector[0].ring, -1)
-
-
 def turned(vector: Sequence[Form]) -> Vector[Form]:
     """A vector of a plane turned counterclockwise."""
     return (-vector[1], vector[0])
 
 
 def upward(kinematics: Closed, vector: Vector[Form]) -> Vector[Form]:
-    """The vector or its opposite: against gravity, as far as signs of terms tell."""
+    """The vector or its opposite: against gravity, or along an axis, as far as signs tell."""
     fall = dot(vector, kinematics.vector(kinematics.model.gravity))
-    first = next(iter(fall.terms.values()), -1)
-    return scale(_minus(vector), vector) if first > 0 else vector
+    rise = next((-fall, *vector)[i] for i, f in enumerate((fall, *vector)) if f.terms)
+    first = next(iter(rise.terms.values()))
+    return vector if first > 0 else tuple(-c for c in vector)
 
 
 def unit(vector: Vector[Form]) -> Vector[Form]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+import sympy as sp
+
 from eomgen.algebra import normal
 from eomgen.algebra.normal import Form
 from eomgen.mechanics import constraints, efforts, lagrange, newton_euler, newton_euler_loads
@@ -106,16 +108,26 @@ def _along(kinematics: Closed) -> tuple[Form, ...]:
     return _generalized(kinematics, list(_scalar(kinematics)))
 
 
+def varied(kinematics: Closed) -> tuple[sp.Symbol, ...]:
+    """The symbols of the velocities: the speeds where the scene moves by them, else the rates."""
+    model = kinematics.model
+    moving = tuple(s.symbol for s in model.speeds if s.symbol in kinematics.flow.derivatives)
+    return moving or tuple(q.rate for q in model.coordinates)
+
+
 def _generalized(kinematics: Closed, found: Sequence[Effort[Form]]) -> tuple[Form, ...]:
+    """Q for each velocity."""
+    return tuple(_force(kinematics, found, u) for u in varied(kinematics))
+
+
+def _force(kinematics: Closed, found: Sequence[Effort[Form]], velocity: sp.Symbol) -> Form:
     ring = kinematics.algebra.number(0).ring
-    return tuple(
-        normal.total(ring, (efforts.generalized_force(kinematics, e, q.rate) for e in found))
-        for q in kinematics.model.coordinates
-    )
+    shares = (efforts.generalized_force(kinematics, e, velocity) for e in found)
+    return normal.total(ring, shares)
 
 
 def total(kinematics: Closed) -> tuple[Form, ...]:
-    """Q of every applied force, for each coordinate."""
+    """Q of every applied force, for each velocity."""
     return _generalized(kinematics, every(kinematics))
 
 

@@ -30,7 +30,7 @@ class BodyRow:
     inertia: Form
     applied: Form
     reaction: Form  # linear in the unknowns and the multipliers
-    weights: tuple[Form, ...]  # d velocity / d q', one for each coordinate
+    weights: tuple[Form, ...]  # d velocity / d u, one for each velocity u: q' or a speed
 
 
 def of(
@@ -40,17 +40,28 @@ def of(
     turning: frozenset[str],
 ) -> tuple[BodyRow, ...]:
     """The rows of every body: forces, then the moments of those that turn."""
+    none = loads.nothing(kinematics)
     return tuple(
         row
         for body in kinematics.model.bodies
         for row in _of_body(
             kinematics,
             body,
-            applied[body.name],
-            reactions.get(body.name, loads.nothing(kinematics)),
+            applied.get(body.name, none),
+            reactions.get(body.name, none),
             body.name in turning,
         )
     )
+
+
+def bare(kinematics: Closed) -> tuple[BodyRow, ...]:
+    """The rows of every body with nothing that acts on it."""
+    return of(kinematics, {}, {}, solid(kinematics))
+
+
+def solid(kinematics: Closed) -> frozenset[str]:
+    """Bodies with inertia against turning."""
+    return frozenset(b.name for b in kinematics.model.bodies if kinematics.spin(b) is not None)
 
 
 def _of_body(
@@ -96,19 +107,17 @@ def _moment_of_inertia(kinematics: Closed, body: Body) -> Form | None:
 
 
 def partials(kinematics: Closed, component: Form) -> tuple[Form, ...]:
-    """d component / d q' for every coordinate."""
+    """d component / d u for every velocity u, q' or a speed."""
     one = kinematics.algebra.number(1)
-    return tuple(
-        kinematics.algebra.along(component, {q.rate: one}) for q in kinematics.model.coordinates
-    )
+    return tuple(kinematics.algebra.along(component, {u: one}) for u in loads.varied(kinematics))
 
 
 def weighted(kinematics: Closed, rows: Sequence[BodyRow], part: str) -> tuple[Form, ...]:
-    """The sum of d velocity / d q_j' times a part of each row, for every coordinate."""
+    """The sum of d velocity / d u times a part of each row, for every velocity u."""
     ring, read = kinematics.algebra.number(0).ring, attrgetter(part)
     return tuple(
         normal.total(ring, (row.weights[j] * read(row) for row in rows))
-        for j in range(len(kinematics.model.coordinates))
+        for j in range(len(loads.varied(kinematics)))
     )
 
 
@@ -117,15 +126,15 @@ def eliminated(
 ) -> tuple[Equation, ...]:
     """The equation of each coordinate: inertia = applied + what acts along coordinates."""
     inertias, forces = (weighted(kinematics, rows, part) for part in ("inertia", "applied"))
+    names = [q.name for q in kinematics.model.coordinates]
+    return balanced(names, inertias, add(forces, other))
+
+
+def balanced(
+    names: Sequence[str], inertias: Sequence[Form], applied: Sequence[Form]
+) -> tuple[Equation, ...]:
+    """Inertia = applied, wherever the applied forces come from."""
     return tuple(
-        balanced(kinematics, q.name, left, right + more)
-        for q, left, right, more in zip(
-            kinematics.model.coordinates, inertias, forces, other, strict=True
-        )
+        Equation(name, left, left * 0, left * 0, left * 0, left * 0, right)
+        for name, left, right in zip(names, inertias, applied, strict=True)
     )
-
-
-def balanced(kinematics: Closed, name: str, inertia: Form, applied: Form) -> Equation:
-    """Inertia = applied, whatever the applied forces come from."""
-    none = kinematics.algebra.number(0)
-    return Equation(name, inertia, none, none, none, none, applied)

@@ -103,6 +103,17 @@ class Lagrangian:
         )
         return normal.total(self.kinematics.algebra.number(0).ring, terms)
 
+    @cached_property
+    def rows(self) -> tuple[LagrangeRow, ...]:
+        """The partial derivatives of each coordinate."""
+        return tuple(_row(self, q) for q in self.kinematics.model.coordinates)
+
+    @cached_property
+    def equations(self) -> tuple[Equation, ...]:
+        """The equation of each coordinate."""
+        pairs = zip(self.kinematics.model.coordinates, self.rows, strict=True)
+        return tuple(_equation(self, q, row) for q, row in pairs)
+
 
 def derive(model: Model) -> Derivation:
     """The whole derivation of a model in closed form.
@@ -111,10 +122,7 @@ def derive(model: Model) -> Derivation:
         UsageError: declared speeds are not independent.
     """
     lagrangian = Lagrangian(closed_kinematics(model))
-    rows = tuple(_row(lagrangian, c) for c in model.coordinates)
-    pairs = zip(model.coordinates, rows, strict=True)
-    in_rates = tuple(_equation(lagrangian, c, row) for c, row in pairs)
-    rates, equations = quasi_velocities.project(lagrangian.kinematics, in_rates)
+    rates, equations = quasi_velocities.project(lagrangian.kinematics, lagrangian.equations)
     links = closed_rows(lagrangian.kinematics)
     equations = with_reactions(lagrangian.kinematics, equations, links)
     return Derivation(
@@ -128,7 +136,7 @@ def derive(model: Model) -> Derivation:
         kinetic_energy=lagrangian.kinetic_energy,
         potential_energy=lagrangian.potential_energy,
         dissipation_function=lagrangian.dissipation_function,
-        rows=rows,
+        rows=lagrangian.rows,
         equations=equations,
         matrix=matrix_form(lagrangian.kinematics, equations),
         constraints=links,

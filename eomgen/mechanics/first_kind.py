@@ -1,0 +1,94 @@
+"""Lagrange's equations of the first kind of a free scene: Cartesian coordinates beside its own.
+
+The mass centres r and the coordinates q are a linked set with the constraints  r - r(q, t) = 0:
+
+m r'' = m g + lambda,   d/dt(dT/dq') - dT/dq = Q - sum of lambda . dr/dq,
+
+with the T of rotation and the Q of everything but weights. Without the multipliers, which are the
+resultants of all that acts on each body but its weight, the equations of the second kind are left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from eomgen.algebra import normal
+from eomgen.algebra.normal import Form
+from eomgen.mechanics import free_bodies_rows, newton_euler_loads
+from eomgen.mechanics.equations import Equation, multiplier_name
+from eomgen.mechanics.free_bodies_rows import BodyRow
+from eomgen.mechanics.kinematics import Kinematics
+from eomgen.mechanics.lagrange import Lagrangian
+from eomgen.mechanics.vectors import add
+from eomgen.model import AXES, Coordinate
+
+
+@dataclass(frozen=True)
+class CartesianRow:
+    """One Cartesian coordinate r:  r - position = 0  and  m r'' = weight + lambda."""
+
+    row: BodyRow  # `applied` is the weight, `reaction` the multiplier
+    position: Form  # the formula over q and t
+    multiplier: sp.Symbol
+
+
+@dataclass(frozen=True)
+class FirstKind:
+    """Everything that the first kind shows."""
+
+    rows: tuple[CartesianRow, ...]
+    rotation: Form  # T of rotation, and of the author's own formula
+    rest: tuple[Equation, ...]  # of each coordinate, with `reaction` = - sum of lambda dr/dq
+    equations: tuple[Equation, ...]  # without multipliers
+
+
+def derive(kinematics: Kinematics[Form]) -> FirstKind:
+    """The equations of a free scene with bodies."""
+    lagrangian = Lagrangian(kinematics)
+    rows = tuple(_rows(kinematics))
+    held = [r.row for r in rows]
+    rest = tuple(
+        _rest(lagrangian, q, [r.row.weights[j] * r.row.reaction for r in rows])
+        for j, q in enumerate(kinematics.model.coordinates)
+    )
+    inertias, weights = (
+        free_bodies_rows.weighted(kinematics, held, part) for part in ("inertia", "applied")
+    )
+    return FirstKind(
+        rows,
+        lagrangian.sum(s for s in lagrangian.kinetic if s.kind != "translation"),
+        rest,
+        free_bodies_rows.balanced(
+            [e.name for e in rest],
+            add(inertias, [e.inertia for e in rest]),
+            add(weights, [e.applied for e in rest]),
+        ),
+    )
+
+
+def _rows(kinematics: Kinematics[Form]) -> Iterator[CartesianRow]:
+    for row in free_bodies_rows.bare(kinematics):
+        if not row.is_moment:
+            axis, body = AXES.index(row.axis), kinematics.bodies[row.body]
+            weight = newton_euler_loads.weight(kinematics, body.mass)[axis]
+            symbol = sp.Symbol(multiplier_name(f"{row.body}.{row.axis}"), real=True)
+            held = replace(row, applied=weight, reaction=kinematics.algebra.of(symbol))
+            yield CartesianRow(held, kinematics.position(row.body)[axis], symbol)
+
+
+def _rest(lagrangian: Lagrangian, q: Coordinate, shares: Sequence[Form]) -> Equation:
+    """What is left for a coordinate where the masses have Cartesian coordinates."""
+    rotation = lagrangian.sum(s for s in lagrangian.kinetic if s.kind != "translation")
+    potential = lagrangian.sum(s for s in lagrangian.potential if s.kind != "gravity")
+    momentum = lagrangian.partial(rotation, q.rate)
+    inertia = lagrangian.kinematics.rate(momentum) - lagrangian.partial(rotation, q.symbol)
+    damping = lagrangian.partial(lagrangian.dissipation_function, q.rate)
+    slope = lagrangian.partial(potential, q.symbol)
+    (equation,) = free_bodies_rows.balanced(
+        [q.name], [inertia], [lagrangian.force(q) - slope - damping]
+    )
+    ring = inertia.ring
+    return replace(equation, reaction=-normal.total(ring, shares))
