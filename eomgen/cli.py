@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import gc
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -21,6 +22,7 @@ from eomgen.cli_common import (
     format_option,
     formulation_option,
     language_option,
+    method_option,
     print_files,
     reporting,
     spec_argument,
@@ -57,13 +59,16 @@ def commands() -> None:
 @language_option
 @templates_option
 @formulation_option
+@method_option
 @format_option
 def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
     """Show the equations of motion of SPEC in the terminal."""
     from eomgen.outputs import Wish, rendered
 
     wish = Wish(("text",), wishes["language"], wishes["templates"], wishes["steps"])
-    (text,) = rendered(studied(spec, format_, Wanted(formulation)), wish).values()
+    (text,) = rendered(
+        studied(spec, format_, Wanted(formulation, method=wishes["method"])), wish
+    ).values()
     click.echo(text, nl=False)
 
 
@@ -90,6 +95,7 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 @language_option
 @templates_option
 @formulation_option
+@method_option
 @click.option("--baumgarte", metavar="ALPHA", help="Stabilise multipliers [1/s], only if asked.")
 @click.option("--step", metavar="H", help="The step [s] that caps ALPHA at 0.2/H.")
 @format_option
@@ -101,6 +107,7 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
     wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"])
     with reporting(format_, files.shown(spec)):
         choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
+        choice = replace(choice, method=wishes["method"])
     made = rendered(studied(spec, format_, choice), wish)
     if output == files.STANDARD:
         print_files(made)

@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from eomgen.errors import EomgenError
+from eomgen.mechanics import free_bodies
+from eomgen.mechanics.free_bodies import FreeBodies
 from eomgen.render.notes import Notes
 from eomgen.render.targets import TARGETS, Named, render
 from eomgen.render.templating import environment
@@ -34,7 +36,16 @@ def _notes(study: Study, wish: Wish) -> Named:
         from eomgen.output_links import links
 
         shown = links(study.links.scene.report, study.links.chosen, wish.language)
-    return Notes(study.derivation, wish.language, line, wish.steps, shown)
+    worked = study.worked if study.is_worked_apart else None
+    free = _free_bodies(study, wish)
+    return Notes(study.derivation, wish.language, line, wish.steps, shown, worked, free)
+
+
+def _free_bodies(study: Study, wish: Wish) -> FreeBodies | None:
+    """What holds the bodies, where the notes show it: Newton's page does, the text with steps."""
+    if study.worked is not None and isinstance(study.worked.steps, FreeBodies):
+        return study.worked.steps
+    return free_bodies.short(study.model) if wish.steps or "latex" in wish.targets else None
 
 
 def _program(study: Study, wish: Wish) -> Named:
@@ -58,14 +69,28 @@ def rendered(study: Study, wish: Wish) -> dict[str, str]:
     templates = environment(wish.templates)
     made: dict[str, str] = {}
     for target in dict.fromkeys(wish.targets):
-        made |= render(SUBJECTS[target](study, wish), TARGETS[target], templates)
+        made |= render(SUBJECTS[target](study, wish), TARGETS[_page(study, target)], templates)
     return made
 
 
+def _page(study: Study, target: str) -> str:
+    """The row of the table of targets: that of the formalism, where it has pages of its own."""
+    method = study.worked.name if study.is_worked_apart and study.worked is not None else ""
+    return f"{target}-{method}" if f"{target}-{method}" in TARGETS else target
+
+
+TITLES = {
+    "newton": "Newton",
+    "dalembert": "d'Alembert",
+    "lagrange": "Lagrange",
+    "lagrange1": "{lagrange1}",
+    "kane": "Kane",
+}
 WORDS = {
     "en": {
         "checked": "checked",
         "routes": "Lagrange = Newton-Euler",
+        "lagrange1": "Lagrange of the first kind",
         "energies": "Lagrange in closed form = Lagrange on the graph",
         "proven": "identical in exact arithmetic and",
         "states": "at {states} random states, worst relative error below {error}",
@@ -78,6 +103,7 @@ WORDS = {
     "es": {
         "checked": "comprobado",
         "routes": "Lagrange = Newton-Euler",
+        "lagrange1": "Lagrange de primera especie",
         "energies": "Lagrange en forma cerrada = Lagrange en el grafo",
         "proven": "idénticas en aritmética exacta y",
         "states": "en {states} estados aleatorios, peor error relativo menor que {error}",
@@ -96,7 +122,7 @@ def check_line(report: Report, language: str) -> str:
     states = words["states"].format(states=found.states, error=bound(found.error))
     digits = words["digits"].format(digits=found.digits) if found.digits > 16 else ""
     proven = f"{words['proven']} " if found.proven else ""
-    routes = words["routes"] if report.projected else words["energies"]
+    routes = _routes(report, words)
     parts = [
         f"{routes}, {proven}{states}{digits}",
         words["power"].format(error=bound(report.power)),
@@ -108,6 +134,13 @@ def check_line(report: Report, language: str) -> str:
     if report.claims:
         parts.append(words["claims"].format(claims=report.claims))
     return f"{words['checked']}: " + "; ".join(parts)
+
+
+def _routes(report: Report, words: dict[str, str]) -> str:
+    """What was compared with what."""
+    if len(report.principles) > 1:
+        return " = ".join(TITLES[name].format(**words) for name in report.principles)
+    return words["routes"] if report.projected else words["energies"]
 
 
 def bound(error: float) -> str:

@@ -7,7 +7,7 @@ text ─ spec.read ─► Model ─┬─ lagrange.derive ─► Derivation (clo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from eomgen import compile
@@ -20,6 +20,7 @@ from eomgen.spec import read
 from eomgen.wanted import AUTO, Wanted
 
 if TYPE_CHECKING:
+    from eomgen.mechanics.principles import Worked
     from eomgen.study_linked import LinkedStudy
 
 
@@ -33,6 +34,7 @@ class Report:
     claims: int  # of the author, all found to hold
     projected: bool  # bodies were projected; else both routes start from the author's energies
     formulations: tuple[str, ...] = ()  # of a linked scene, found to agree
+    principles: tuple[str, ...] = ()  # formalisms that were compared, where one was asked for
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,16 @@ class Study:
     program: Program
     report: Report
     links: LinkedStudy | None = None  # where the scene has constraints
+    worked: Worked | None = None  # the formalism that was asked for
+
+    @property
+    def is_worked_apart(self) -> bool:
+        """Whether a formalism was asked for that is not the one shown as ever.
+
+        That is Lagrange's, of the first kind for a linked set of coordinates.
+        """
+        usual = {"lagrange", "lagrange1"} if self.derivation.constraints else {"lagrange"}
+        return self.worked is not None and self.worked.name not in usual
 
     @property
     def freedom(self) -> int:
@@ -71,11 +83,29 @@ def of_model(model: Model, wanted: Wanted = AUTO) -> Study:
         # imported where it is needed: the analysis of constraints brings NumPy
         from eomgen import study_linked
 
-        return _linked(study_linked.of_model(model, wanted))
+        return _by(_linked(study_linked.of_model(model, wanted)), wanted.method)
+    return _by(_free(model), wanted.method)
+
+
+def _free(model: Model) -> Study:
+    """The study of a scene that has no constraints."""
     derivation = lagrange.derive(model)
     machine = compile.machine_of(model)
     report = checked(derivation, machine)
     return Study(model, derivation, machine, compile.program(machine), report)
+
+
+def _by(study: Study, method: str | None) -> Study:
+    """The study with the formalism that was asked for, all that apply compared."""
+    if method is None:
+        return study
+    # only a user who asks for a formalism waits for all of them
+    from eomgen.checks import principles
+
+    drawn = samples.draw(study.model)
+    found = principles.compare(study.derivation, study.machine, drawn, method)
+    report = replace(study.report, agreement=found.agreement, principles=found.names)
+    return replace(study, report=report, worked=found.worked)
 
 
 def _linked(links: LinkedStudy) -> Study:

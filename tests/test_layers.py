@@ -54,7 +54,8 @@ ALLOWED: dict[str, set[str]] = {
     "shelf": {"errors", "files", "render", "spec"},
     "rest": RECORDS | {"analysis", "mechanics", "render", "spec", "states"},
     "output_links": {"analysis", "formulation", "render"},
-    "outputs": RECORDS | {"output_links", "analysis", "study", "render", "checks", "spec"},
+    "outputs": RECORDS
+    | {"output_links", "analysis", "mechanics", "study", "render", "checks", "spec"},
     "cli_common": {"errors", "files", "outputs", "spec", "study", "wanted"},
     "cli": {
         "__init__",

@@ -44,6 +44,7 @@ class VirtualWork:
 
     inertial: tuple[Inertial, ...]
     applied: tuple[Applied, ...]
+    tied: tuple[Form, ...]  # J' lambda: what linked virtual displacements add, zero if free
     equations: tuple[Equation, ...]  # of each coordinate: the coefficient of delta q vanishes
 
 
@@ -55,6 +56,7 @@ def derive(kinematics: Kinematics[Form]) -> VirtualWork:
     return VirtualWork(
         inertial=tuple(Inertial(row, virtual(kinematics, row.weights)) for row in rows),
         applied=tuple(_applied(kinematics, e) for e in free_bodies_loads.every(kinematics)),
+        tied=free_bodies_loads.constrained(kinematics),
         equations=free_bodies_rows.balanced(names, inertias, free_bodies_loads.total(kinematics)),
     )
 

@@ -123,6 +123,9 @@ def multiplier_name(row: str) -> str:
     return f"lambda {row}"
 
 
+REACTION = "reaction "  # what the names of these symbols begin with
+
+
 def reaction_name(letter: str, body: str) -> str:
     """The name of the symbol of a force or moment that holds a body."""
-    return f"reaction {letter} {body}"
+    return f"{REACTION}{letter} {body}"

@@ -23,13 +23,14 @@ from eomgen.algebra import normal
 from eomgen.algebra.normal import Form
 from eomgen.mechanics import free_bodies_joints as joints
 from eomgen.mechanics import free_bodies_loads as loads
-from eomgen.mechanics import free_bodies_rows, newton_euler, newton_euler_tree
+from eomgen.mechanics import free_bodies_rows, lagrange, newton_euler, newton_euler_tree
 from eomgen.mechanics.equations import Equation, reaction_name
 from eomgen.mechanics.free_bodies_joints import Closed, Hinge, Share
 from eomgen.mechanics.free_bodies_loads import Wrenches, less, plus
 from eomgen.mechanics.free_bodies_rows import BodyRow
 from eomgen.mechanics.newton_euler import Wrench
 from eomgen.mechanics.vectors import add, dot, scale, subtract
+from eomgen.model import Energy, Model
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,16 @@ class FreeBodies:
 def derive(kinematics: Closed) -> FreeBodies:
     """The free-body equations of a scene with bodies and what is left without the reactions."""
     return by_joints(kinematics) or by_resultants(kinematics)
+
+
+LARGEST = 6  # bodies of a scene whose forces between components are shown with any derivation
+
+
+def short(model: Model) -> FreeBodies | None:
+    """The forces between the components of a small scene; None of a large one or without bodies."""
+    small = 0 < len(model.bodies) <= LARGEST and model.energy == Energy()
+    is_solid = model.space == "solid" and any(b.inertia or b.frame.along for b in model.bodies)
+    return by_joints(lagrange.closed_kinematics(model)) if small and not is_solid else None
 
 
 def by_joints(kinematics: Closed) -> FreeBodies | None:

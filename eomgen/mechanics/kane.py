@@ -27,6 +27,7 @@ class Kane:
     rows: tuple[BodyRow, ...]  # their `weights` are components of the partial velocities
     active: tuple[Form, ...]  # F_r
     inertia: tuple[Form, ...]  # F*_r
+    tied: tuple[Form, ...]  # J' lambda of a linked scene, else zero
     equations: tuple[Equation, ...]  # of the speeds
 
 
@@ -58,5 +59,6 @@ def derive(kinematics: Kinematics[Form]) -> Kane:
         rows=rows,
         active=active,
         inertia=tuple(-p for p in momenta),
+        tied=free_bodies_loads.constrained(kinematics),
         equations=free_bodies_rows.balanced(speeds.names(kinematics.model), momenta, active),
     )

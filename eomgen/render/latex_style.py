@@ -32,6 +32,7 @@ def style(model: Model) -> Style:
         index=lambda letter, *of: f"{letter}_{{{','.join(_index(n) for n in of)}}}",
         sub=lambda letter, symbol: f"{letter}_{{{symbol}}}",
         dotted=lambda name: latex_names.dotted(name, 1),
+        accelerated=lambda name: latex_names.dotted(name, 2),
         partial=lambda what, by: rf"\frac{{\partial {what}}}{{\partial {by}}}",
         rate=lambda what: rf"\frac{{d}}{{dt}} {bracketed(what)}",
         display=display,

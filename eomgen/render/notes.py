@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from eomgen.algebra import normal
 from eomgen.algebra.normal import Form
 from eomgen.mechanics.equations import Contribution, Derivation, Equation, LagrangeRow
+from eomgen.mechanics.free_bodies import FreeBodies
+from eomgen.mechanics.principles import Worked
 from eomgen.model import AXES, SPACES, Coordinate
 from eomgen.render import (
     arrange,
@@ -20,6 +22,8 @@ from eomgen.render import (
     notes_links_names,
     notes_links_page,
     notes_matrix,
+    notes_principles,
+    notes_reactions,
     text_style,
     tree,
     words,
@@ -28,12 +32,12 @@ from eomgen.render.arrange_equation import RIGHT
 from eomgen.render.notes_links import Links
 from eomgen.render.notes_page import (
     ENOUGH,
-    LARGEST,
     How,
     Page,
     arranged,
     formula,
     joined,
+    readable,
     spelled,
 )
 from eomgen.render.style import Style
@@ -52,6 +56,8 @@ class Notes:
     check: str = ""
     steps: bool = False  # whether the text shows the partial derivatives; LaTeX always does
     links: Links | None = None  # what is known of the constraints
+    worked: Worked | None = None  # the formalism that was asked for, where it is not as ever
+    free: FreeBodies | None = None  # what holds the bodies, where it is shown
 
     @property
     def name(self) -> str:
@@ -72,6 +78,7 @@ def text_context(notes: Notes) -> dict[str, object]:
 def context(notes: Notes, style: Style) -> dict[str, object]:
     """Every formula of the notes, spelled."""
     names = notes_links_names.aliases(notes.derivation)
+    names = {**names, **notes_principles.aliases(notes.derivation, notes.worked, notes.free)}
     style = notes_links_names.with_multipliers(style, names)
     page = Page(notes.derivation, notes.language, style)
     model = notes.derivation.model
@@ -90,6 +97,8 @@ def context(notes: Notes, style: Style) -> dict[str, object]:
         "steps": tuple(_step(page, c, r) for c, r in _by_coordinate(page)),
         **_equations(page),
         "matrix": notes_matrix.matrix(page),
+        **notes_reactions.tables(page, notes.free),
+        **notes_principles.tables(page, notes.worked),
     }
 
 
@@ -228,12 +237,6 @@ def _equations(page: Page) -> dict[str, object]:
     }
 
 
-def _readable(found: Tree) -> Tree | int:
-    """The tree, or its size where nobody would read it."""
-    size = tree.size(found)
-    return size if size > LARGEST else found
-
-
 def _equation(page: Page, row: Equation) -> dict[str, str]:
     """One equation, and the words before it: what it was divided by."""
     style = page.style
@@ -241,7 +244,7 @@ def _equation(page: Page, row: Equation) -> dict[str, str]:
     if count > ENOUGH:
         return {"body": style.equation(spelled(page, count), "0"), "said": page.words["equation"]}
     found = arrange_equation.equation(page.arranger, row)
-    left, right = (spelled(page, _readable(side)) for side in (found.left, found.right))
+    left, right = (spelled(page, readable(side)) for side in (found.left, found.right))
     divisor = "" if found.divisor == tree.ONE else style.inline(style.formula(found.divisor))
     said = page.words["divided"].format(divisor=divisor) if divisor else page.words["equation"]
     return {"body": style.equation(left, right), "said": said}

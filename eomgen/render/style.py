@@ -23,6 +23,7 @@ class Style:
     index: Callable[..., str]  # T, bob: T_bob; names of bodies and points
     sub: Callable[[str, str], str]  # Q, spelled symbol: Q_s
     dotted: Callable[[str], str]  # x_bob: its rate
+    accelerated: Callable[[str], str]  # x_bob: its second rate
     partial: Callable[[str, str], str]  # dL/ds
     rate: Callable[[str], str]  # d/dt (...)
     display: Callable[[Rows], str]  # equations below each other, long ones broken

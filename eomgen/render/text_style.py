@@ -35,6 +35,7 @@ def style() -> Style:
         index=lambda letter, *of: f"{letter}_{','.join(n.replace(' ', '_') for n in of)}",
         sub=lambda letter, symbol: f"{letter}_{symbol}",
         dotted=lambda name: f"{name}′",
+        accelerated=lambda name: f"{name}″",
         partial=lambda what, by: f"∂{what}/∂{by}",
         rate=lambda what: f"d/dt({what})",
         display=display,
