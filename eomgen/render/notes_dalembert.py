@@ -15,7 +15,8 @@ from eomgen.render.tree import Symbol, Tree
 
 def tables(page: Page, steps: VirtualWork) -> dict[str, object]:
     """Everything that the template of the principle shows beside the common parts."""
-    rows = [row for i in steps.inertial for row in _inertial(page, i)]
+    moving = (i for i in steps.inertial if i.row.inertia.terms or i.displacement.terms)
+    rows = [row for i in moving for row in _inertial(page, i)]
     works = [
         (
             page.style.index(page.style.symbol("delta W"), a.name),

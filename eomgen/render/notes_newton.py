@@ -17,8 +17,9 @@ def tables(page: Page, free: FreeBodies) -> dict[str, object]:
         "moments_said": _moments_said(page, free),
         "unknowns_said": _unknowns_said(page, free),
         "unknowns": tuple(legend(page, u) for u in free.unknowns if free.by_joints),
-        "sums_said": page.words["sums_joints" if free.by_joints else "sums_resultants"],
-        "sums": tuple(_sums(page, free)),
+        "sums_title": page.words["elimination" if free.unknowns else "projection"],
+        "sums_said": _sums_said(page, free),
+        "sums": tuple(_sums(page, free)) if _is_summed(free) else (),
         "work_said": _work_said(page, free),
         "work": tuple(_work(page, free)),
     }
@@ -66,18 +67,37 @@ def legend(page: Page, unknown: Unknown) -> str:
     parent = unknown.held_by
     return page.words[f"unknown_{unknown.letter}"].format(
         symbol=page.style.inline(page.style.symbol(unknown.symbol.name)),
-        parent=page.words["world"] if parent is None else page.style.words(parent),
+        of_parent=page.words["of_world" if parent is None else "of_body"].format(
+            name=page.style.words(parent or "")
+        ),
         body=page.style.words(unknown.body),
     )
+
+
+def _is_summed(free: FreeBodies) -> bool:
+    """Whether the equations of the bodies are not those of the coordinates already."""
+    held = [w for row in free.rows for w in row.weights if w.terms]
+    return (
+        bool(free.unknowns) or len(held) > len(free.equations) or any(w != w * 0 + 1 for w in held)
+    )
+
+
+def _sums_said(page: Page, free: FreeBodies) -> str:
+    if not free.unknowns:
+        return page.words["sums_plain"]
+    return page.words["sums_joints" if free.by_joints else "sums_resultants"]
 
 
 def _sums(page: Page, free: FreeBodies) -> Iterator[Row]:
     """How the equations are added for each coordinate."""
     for j, coordinate in enumerate(page.derivation.model.coordinates):
         weights = [notes_steps.moved(page, row.weights[j]) for row in free.rows]
-        added = page.style.inline(page.style.formula(notes_steps.numbered(weights)))
-        symbol = page.style.inline(page.style.symbol(coordinate.symbol.name))
-        yield {"symbol": symbol, "sum": added}
+        added = notes_steps.numbered(weights)
+        symbol = page.style.symbol(coordinate.symbol.name)
+        yield {
+            "symbol": page.style.inline(symbol),
+            "sum": page.style.inline(spelled(page, notes_steps.in_one_line(added))),
+        }
 
 
 def _work_said(page: Page, free: FreeBodies) -> str:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from eomgen.mechanics.free_bodies import FreeBodies, Unknown
-from eomgen.render import notes_newton, notes_steps, tree
-from eomgen.render.notes_page import Page, spelled
+from eomgen.render import arrange, notes_newton, tree
+from eomgen.render.notes_page import Page, arranged, spelled
 
 LONGEST = 24  # terms of a force that is written out
 
@@ -22,6 +22,6 @@ def tables(page: Page, free: FreeBodies | None) -> dict[str, object]:
 
 
 def _formula(page: Page, unknown: Unknown) -> str:
-    found = notes_steps.moved(page, unknown.value)
-    is_long = not isinstance(found, int) and tree.size(found) > LONGEST
-    return spelled(page, tree.size(found) if is_long and not isinstance(found, int) else found)
+    found = arranged(page, arrange.loads, unknown.value)
+    size = found if isinstance(found, int) else tree.size(found)
+    return spelled(page, size if size > LONGEST else found)

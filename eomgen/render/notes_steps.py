@@ -12,6 +12,8 @@ from eomgen.render.tree import Number, Product, Symbol, Tree
 
 Row = Mapping[str, str]
 
+SENTENCE = 20  # terms of a formula that stands inside of one
+
 
 def times(*factors: Tree) -> Tree:
     """The product in one row of factors."""
@@ -43,10 +45,24 @@ def inertia(page: Page, row: BodyRow) -> Tree | int:
     """M a, the mass in front of the acceleration; in space the whole rate of a momentum."""
     if row.factor is None:
         return moved(page, row.inertia)
-    mass, acceleration = moved(page, row.factor), moved(page, row.acceleration)
+    mass, acceleration = moved(page, row.factor), _acceleration(page, row.acceleration)
     if isinstance(mass, int) or isinstance(acceleration, int):
         return len(row.inertia.terms)
-    return times(mass, acceleration)
+    found = times(mass, acceleration)
+    return arranged(page, arrange.loads, row.inertia) if _is_reducible(found) else found
+
+
+def _is_reducible(found: Tree) -> bool:
+    """Whether the mass shares a factor with the acceleration, or cancels one."""
+    if not isinstance(found, Product):
+        return False
+    return bool(found.divisors) or len(set(found.factors)) < len(found.factors)
+
+
+def _acceleration(page: Page, form: Form) -> Tree | int:
+    """s'' + l phi'' cos phi - ..., or l (phi'' sin phi + ...) where all terms share a factor."""
+    shared = arranged(page, arrange.loads, form)
+    return shared if isinstance(shared, Product) else moved(page, form)
 
 
 def acting(page: Page, applied: Form, reaction: Form) -> Tree | int:
@@ -92,9 +108,15 @@ def numbered(weights: Sequence[Tree | int]) -> Tree:
     return tree.total(tuple(terms))
 
 
+def in_one_line(found: Tree) -> Tree | int:
+    """The tree, or its size where it does not go into a sentence."""
+    size = tree.size(found)
+    return size if size > SENTENCE or tree.length(found) > 3 * SENTENCE else found
+
+
 def _weighted(number: int, weight: Tree | int) -> Tree:
     if isinstance(weight, int):
-        return times(Symbol(f"({number})"), Symbol("..."))
+        return tree.Sum((Symbol(f"({number})"),) * weight)  # too long to be shown, as any part is
     negative, rest = tree.split_sign(weight)
     term = times(Symbol(f"({number})"), rest) if rest != tree.ONE else Symbol(f"({number})")
     return tree.negated(term) if negative else term

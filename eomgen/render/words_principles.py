@@ -12,15 +12,16 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "moments_said": "Moments are about the mass centre.",
         "moments_body": "Moments are about the mass centre, in the axes of the body.",
         "unknowns": "The forces between components are",
-        "unknown_S": "{symbol}, of {parent} on {body}, along the line that joins them, positive"
+        "unknown_S": "{symbol}, {of_parent} on {body}, along the line that joins them, positive"
         " where it pulls",
-        "unknown_N": "{symbol}, of {parent} on {body}, normal to its motion",
-        "unknown_F": "{symbol}, of {parent} on {body}, along its motion",
-        "unknown_M": "{symbol}, the moment of {parent} on {body}",
-        "unknown_X": "{symbol}, of {parent} on {body}, component along x",
-        "unknown_Y": "{symbol}, of {parent} on {body}, component along y",
-        "unknown_Z": "{symbol}, of {parent} on {body}, component along z",
-        "world": "the ground",
+        "unknown_N": "{symbol}, {of_parent} on {body}, normal to its motion",
+        "unknown_F": "{symbol}, {of_parent} on {body}, along its motion",
+        "unknown_M": "{symbol}, the moment {of_parent} on {body}",
+        "unknown_X": "{symbol}, {of_parent} on {body}, component along x",
+        "unknown_Y": "{symbol}, {of_parent} on {body}, component along y",
+        "unknown_Z": "{symbol}, {of_parent} on {body}, component along z",
+        "of_world": "of the ground",
+        "of_body": "of {name}",
         "resultants": "The resultants of all forces of constraint on each body are unknown:"
         " {forces} for the force, {moments} for the moment about the mass centre.",
         "resultants_forces": "The resultants of all forces of constraint on each body are unknown:"
@@ -29,6 +30,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "elimination": "Elimination of the reactions",
         "sums_joints": "Each equation, multiplied as shown, is added; no force between components"
         " is left:",
+        "projection": "Equations of the coordinates",
+        "sums_plain": "Each equation, multiplied as shown, is added:",
         "sums_resultants": "Each equation, multiplied as shown, is added; what is left of the"
         " forces of constraint is their virtual work:",
         "work_ideal": "Ideal forces of constraint do no virtual work:",
@@ -41,8 +44,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "dalembert_said": "The virtual work of the applied forces and of the inertial forces is"
         " zero for every virtual displacement; ideal forces of constraint do none.",
         "inertial": "Inertial forces and virtual displacements",
-        "momentum_said": "The last rows are the rates of the angular momentum, in the axes of the"
-        " body, and the virtual rotations.",
+        "momentum_said": "The components of the rate of the angular momentum and of the virtual"
+        " rotation are in the axes of the body.",
         "applied_works": "Virtual work of the applied forces",
         "no_works": "No applied force does virtual work.",
         "coefficients": "The coefficient of each virtual displacement vanishes:",
@@ -73,15 +76,16 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "moments_said": "Los momentos son respecto al centro de masas.",
         "moments_body": "Los momentos son respecto al centro de masas, en ejes del cuerpo.",
         "unknowns": "Las fuerzas entre componentes son",
-        "unknown_S": "{symbol}, de {parent} sobre {body}, según la recta que los une, positiva si"
+        "unknown_S": "{symbol}, {of_parent} sobre {body}, según la recta que los une, positiva si"
         " tira",
-        "unknown_N": "{symbol}, de {parent} sobre {body}, normal a su movimiento",
-        "unknown_F": "{symbol}, de {parent} sobre {body}, según su movimiento",
-        "unknown_M": "{symbol}, el momento de {parent} sobre {body}",
-        "unknown_X": "{symbol}, de {parent} sobre {body}, componente según x",
-        "unknown_Y": "{symbol}, de {parent} sobre {body}, componente según y",
-        "unknown_Z": "{symbol}, de {parent} sobre {body}, componente según z",
-        "world": "el suelo",
+        "unknown_N": "{symbol}, {of_parent} sobre {body}, normal a su movimiento",
+        "unknown_F": "{symbol}, {of_parent} sobre {body}, según su movimiento",
+        "unknown_M": "{symbol}, el momento {of_parent} sobre {body}",
+        "unknown_X": "{symbol}, {of_parent} sobre {body}, componente según x",
+        "unknown_Y": "{symbol}, {of_parent} sobre {body}, componente según y",
+        "unknown_Z": "{symbol}, {of_parent} sobre {body}, componente según z",
+        "of_world": "del suelo",
+        "of_body": "de {name}",
         "resultants": "Son incógnitas las resultantes de todas las fuerzas de ligadura sobre cada"
         " cuerpo: {forces} para la fuerza, {moments} para el momento respecto al centro de masas.",
         "resultants_forces": "Son incógnitas las resultantes de todas las fuerzas de ligadura sobre"
@@ -90,6 +94,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "elimination": "Eliminación de las reacciones",
         "sums_joints": "Se suma cada ecuación multiplicada como se indica; no queda ninguna fuerza"
         " entre componentes:",
+        "projection": "Ecuaciones de las coordenadas",
+        "sums_plain": "Se suma cada ecuación multiplicada como se indica:",
         "sums_resultants": "Se suma cada ecuación multiplicada como se indica; de las fuerzas de"
         " ligadura queda su trabajo virtual:",
         "work_ideal": "Las fuerzas de ligadura ideales no realizan trabajo virtual:",
@@ -102,8 +108,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "dalembert_said": "El trabajo virtual de las fuerzas aplicadas y de las fuerzas de inercia"
         " es nulo en todo desplazamiento virtual; las fuerzas de ligadura ideales no lo realizan.",
         "inertial": "Fuerzas de inercia y desplazamientos virtuales",
-        "momentum_said": "Las últimas filas son las derivadas del momento cinético, en ejes del"
-        " cuerpo, y los giros virtuales.",
+        "momentum_said": "Las componentes de la derivada del momento cinético y del giro virtual"
+        " son en ejes del cuerpo.",
         "applied_works": "Trabajo virtual de las fuerzas aplicadas",
         "no_works": "Ninguna fuerza aplicada realiza trabajo virtual.",
         "coefficients": "El coeficiente de cada desplazamiento virtual es nulo:",
