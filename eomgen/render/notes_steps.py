@@ -117,6 +117,11 @@ def in_one_line(found: Tree) -> Tree | int:
 def _weighted(number: int, weight: Tree | int) -> Tree:
     if isinstance(weight, int):
         return tree.Sum((Symbol(f"({number})"),) * weight)  # too long to be shown, as any part is
-    negative, rest = tree.split_sign(weight)
-    term = times(Symbol(f"({number})"), rest) if rest != tree.ONE else Symbol(f"({number})")
+    return led(Symbol(f"({number})"), weight)
+
+
+def led(lead: Symbol, factor: Tree) -> Tree:
+    """Lead * factor with the sign outside: -(3) l cos phi."""
+    negative, rest = tree.split_sign(factor)
+    term = lead if rest == tree.ONE else times(lead, rest)
     return tree.negated(term) if negative else term

@@ -40,6 +40,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "reactions": "Forces between components",
         "reactions_said": "They follow from the motion:",
         "reactions_named": "Forces of constraint",
+        "named_on": "{name}, the force on {on}:",
+        "named_coordinates": "{name}, the generalized force along each coordinate:",
         "dalembert": "d'Alembert's principle",
         "dalembert_said": "The virtual work of the applied forces and of the inertial forces is"
         " zero for every virtual displacement; ideal forces of constraint do none.",
@@ -104,6 +106,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "reactions": "Fuerzas entre componentes",
         "reactions_said": "Se deducen del movimiento:",
         "reactions_named": "Fuerzas de ligadura",
+        "named_on": "{name}, la fuerza sobre {on}:",
+        "named_coordinates": "{name}, la fuerza generalizada según cada coordenada:",
         "dalembert": "Principio de d'Alembert",
         "dalembert_said": "El trabajo virtual de las fuerzas aplicadas y de las fuerzas de inercia"
         " es nulo en todo desplazamiento virtual; las fuerzas de ligadura ideales no lo realizan.",
