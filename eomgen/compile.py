@@ -18,6 +18,7 @@ from eomgen.mechanics import (
     constraints,
     energies,
     machine,
+    motions,
     multipliers,
     speeds,
     virtual_work,
@@ -118,16 +119,20 @@ class Machine:
     @cached_property
     def outputs(self) -> tuple[Node, ...]:
         """The author's own formulas."""
-        bindings: dict[sp.Symbol, Node] = {}
-        if any(o.formula.free_symbols & _accelerations(self.model) for o in self.model.outputs):
-            pairs = zip(self.model.coordinates, self.accelerations, strict=True)
-            bindings = {c.acceleration: a for c, a in pairs}
-        algebra = self.kinematics.algebra.extended(bindings)
-        return tuple(algebra.of(o.formula) for o in self.model.outputs)
+        formulas = [o.formula for o in self.model.outputs]
+        unknown = {c.acceleration for c in self.model.coordinates}
+        unknown |= {s.rate for s in self.model.speeds}
+        algebra = self.kinematics.algebra
+        if any(f.free_symbols & unknown for f in formulas):
+            algebra = algebra.extended(self.motion)
+        return tuple(algebra.of(f) for f in formulas)
 
-
-def _accelerations(model: Model) -> set[sp.Symbol]:
-    return {c.acceleration for c in model.coordinates}
+    @cached_property
+    def motion(self) -> dict[sp.Symbol, Node]:
+        """q'' and u' on the motion, by their symbols."""
+        pairs = zip(self.model.coordinates, self.accelerations, strict=True)
+        own = zip(self.model.speeds, self.solution[0], strict=bool(self.model.speeds))
+        return {s.rate: a for s, a in own} | {c.acceleration: a for c, a in pairs}
 
 
 def machine_of(model: Model) -> Machine:
@@ -182,6 +187,12 @@ def _state_derivative(m: Machine) -> Function:
     return assemble("state_derivative", about, (len(results),), results, pivots)
 
 
+def _project_positions(m: Machine) -> Function:
+    about = "the coordinates with every quaternion divided by its length"
+    results = motions.normalised(m.model, m.kinematics.algebra)
+    return assemble("project_positions", about, (len(results),), results)
+
+
 def _energy(m: Machine) -> Function:
     return assemble("energy", "kinetic and potential energy [J]", (2,), m.energy)
 
@@ -199,6 +210,7 @@ FUNCTIONS: dict[str, Build] = {
     "accelerations": _accelerations_function,
     "coordinate_accelerations": _coordinate_accelerations,
     "state_derivative": _state_derivative,
+    "project_positions": _project_positions,
     "energy": _energy,
     "outputs": _outputs,
 }
@@ -206,7 +218,9 @@ FUNCTIONS: dict[str, Build] = {
 
 def wanted(model: Model) -> tuple[str, ...]:
     """The functions of a model: q'' apart only where the speeds are not q'."""
-    return tuple(f for f in FUNCTIONS if model.speeds or f != "coordinate_accelerations")
+    unneeded = set() if model.speeds else {"coordinate_accelerations"}
+    unneeded |= set() if model.quaternions else {"project_positions"}
+    return tuple(f for f in FUNCTIONS if f not in unneeded)
 
 
 def program(m: Machine) -> Program:

@@ -28,6 +28,8 @@ from eomgen.wanted import AUTO, Wanted
 DEAD_POINT_SAMPLES = 200
 LEAST_DISCRIMINANT = 0.05  # of its largest value over the sampled states
 
+DUST = 1e-40  # below the round-off of 50 digits
+
 
 @dataclass(frozen=True)
 class Linked:
@@ -66,10 +68,15 @@ class Linked:
         places = zip(self.model.coordinates, state.coordinates, state.rates, strict=True)
         for c, place, rate in places:
             if c.name in stated:
-                found[c.name] = place
+                found[c.name] = _without_dust(place)
             if c.rate.name in stated or (follows and c.name not in independent):
-                found[c.rate.name] = rate
+                found[c.rate.name] = _without_dust(rate)
         return found
+
+
+def _without_dust(value: Any) -> Any:
+    """The value, or zero where only the round-off of 50 digits is left of it."""
+    return value if abs(value) > DUST else type(value)(0)
 
 
 @dataclass(frozen=True)

@@ -103,6 +103,29 @@ class Turn:
     axis: tuple[sp.Expr, sp.Expr, sp.Expr]
     angle: sp.Expr
 
+    @property
+    def formulas(self) -> tuple[sp.Expr, ...]:
+        """What turns."""
+        return (self.angle,)
+
+
+@dataclass(frozen=True)
+class Quaternion:
+    """A turn by a unit quaternion; `speeds`: its angular velocity in the axes after the turn.
+
+    symbols: four coordinates, the scalar part first, whose squares add up to one.
+    """
+
+    name: str
+    symbols: tuple[sp.Symbol, sp.Symbol, sp.Symbol, sp.Symbol]
+    rates: tuple[sp.Symbol, sp.Symbol, sp.Symbol, sp.Symbol]
+    speeds: tuple[sp.Symbol, sp.Symbol, sp.Symbol]
+
+    @property
+    def formulas(self) -> tuple[sp.Expr, ...]:
+        """What turns."""
+        return self.symbols
+
 
 @dataclass(frozen=True)
 class Frame:
@@ -112,7 +135,7 @@ class Frame:
     """
 
     origin: Place
-    turns: tuple[Turn, ...] = ()
+    turns: tuple[Turn | Quaternion, ...] = ()
     along: tuple[str, str] | None = None
 
 
@@ -262,7 +285,8 @@ class Model:
     gravity: tuple[sp.Expr, ...]
     parameters: tuple[Parameter, ...] = ()
     coordinates: tuple[Coordinate, ...] = ()
-    speeds: tuple[Speed, ...] = ()
+    speeds: tuple[Speed, ...] = ()  # with quaternions: the rates of the other coordinates too
+    quaternions: tuple[Quaternion, ...] = ()
     prescribed: tuple[Prescribed, ...] = ()
     inputs: tuple[Input, ...] = ()
     points: tuple[Point, ...] = ()

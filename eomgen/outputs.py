@@ -157,7 +157,7 @@ def _text_summary(spec: str, study: Study) -> str:
     count = study.freedom
     freedom = f"{count} degree{'s' if count != 1 else ''} of freedom"
     said = "; ".join([freedom, *_linked_words(study), check_line(study.report, "en")])
-    return "\n    ".join([f"{spec}: {said}", *_initial_words(study)])
+    return "\n    ".join([f"{spec}: {said}", *_initial_words(study), *study.report.warnings])
 
 
 def _initial_words(study: Study) -> tuple[str, ...]:
@@ -189,9 +189,17 @@ def _json_summary(spec: str, study: Study) -> str:
             "power_balance": report.power,
             "terms": report.terms,
             "claims": report.claims,
+            **_warnings(study),
             **_linked_json(study),
         }
     )
+
+
+def _warnings(study: Study) -> dict[str, list[str]]:
+    """What is true and yet may surprise; a free scene without any says nothing."""
+    linked = () if study.links is None else study.links.scene.report.freedom.warnings
+    found = [*study.report.warnings, *linked]
+    return {"warnings": found} if found or study.links is not None else {}
 
 
 def _linked_json(study: Study) -> dict[str, Any]:
@@ -207,7 +215,6 @@ def _linked_json(study: Study) -> dict[str, Any]:
         "coordinates": freedom.coordinates,
         "minimal_coordinates": freedom.minimal_coordinates,
         "independent": list(freedom.basis.independent),
-        "warnings": list(freedom.warnings),
         "constraints": [to_json(card) for card in study.links.scene.report.cards],
     }
 

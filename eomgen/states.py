@@ -19,6 +19,7 @@ from eomgen.model import Model
 KEYS = ("t", "coordinates", "rates", "speeds", "inputs", "parameters")
 LONGEST_NUMBER = 400  # characters
 LARGEST_EXPONENT = 4000
+UNIT_TOLERANCE = sp.Rational(1, 10**9)  # of the square of a quaternion's length
 
 
 @dataclass(frozen=True)
@@ -125,7 +126,22 @@ class _Reader:
             inputs=self.values(entry, "inputs", [i.name for i in model.inputs], {}),
             parameters=self.parameters(entry),
         )
+        self.quaternions(state)
         return state if len(self.problems) == before else None
+
+    def quaternions(self, state: State) -> None:
+        """Note every quaternion whose length is not 1."""
+        if len(state.coordinates) < len(self.model.coordinates):
+            return  # said already
+        symbols = [c.symbol for c in self.model.coordinates]
+        given = dict(zip(symbols, state.coordinates, strict=True))
+        for q in self.model.quaternions:
+            excess = sp.Abs(sum(given[s] ** 2 for s in q.symbols) - 1)
+            if excess > UNIT_TOLERANCE:
+                self.wrong(
+                    f"the quaternion {q.name} is not of length 1 (its square is off by "
+                    f"{float(excess):.1e}); divide it by its length"
+                )
 
     def motion(
         self, entry: Mapping[str, Any]

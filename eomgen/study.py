@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from eomgen import compile
-from eomgen.checks import agreement, dimensions, expectations, mass, power, samples
-from eomgen.mechanics import lagrange
+from eomgen.checks import agreement, dimensions, expectations, gimbal, mass, power, samples
+from eomgen.mechanics import lagrange, speeds
 from eomgen.mechanics.equations import Derivation
 from eomgen.model import Model
 from eomgen.program import Program
@@ -35,6 +35,7 @@ class Report:
     projected: bool  # bodies were projected; else both routes start from the author's energies
     formulations: tuple[str, ...] = ()  # of a linked scene, found to agree
     principles: tuple[str, ...] = ()  # formalisms that were compared, where one was asked for
+    warnings: tuple[str, ...] = ()  # what is true and yet may surprise
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ class Study:
     def freedom(self) -> int:
         """The degrees of freedom."""
         if self.links is None:
-            return len(self.model.coordinates)
+            return len(speeds.symbols(self.model))
         return self.links.scene.report.freedom.degrees_of_freedom
 
 
@@ -117,6 +118,7 @@ def _linked(links: LinkedStudy) -> Study:
         claims=links.claims,
         projected=bool(links.derivation.model.bodies),
         formulations=links.formulations,
+        warnings=gimbal.warnings(links.derivation.model),
     )
     model = links.derivation.model
     return Study(model, links.derivation, links.machine, links.program(), report, links)
@@ -136,4 +138,5 @@ def checked(derivation: Derivation, machine: compile.Machine) -> Report:
         power=power.balance(machine, drawn),
         claims=expectations.check(machine, drawn),
         projected=bool(derivation.model.bodies),
+        warnings=gimbal.warnings(derivation.model),
     )

@@ -31,7 +31,7 @@ def random_states(name: str) -> tuple[State, ...]:
     for i in range(STATES):
         moving = [column[i] for column in drawn.state]
         speeds = dict(zip([s.name for s in scene.speeds], moving[count:], strict=False))
-        rates = dict(zip([c.name for c in scene.coordinates], moving[count:], strict=True))
+        rates = dict(zip([c.name for c in scene.coordinates], moving[count:], strict=False))
         entries.append(
             {
                 "t": drawn.time[i],

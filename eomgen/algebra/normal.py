@@ -249,16 +249,20 @@ def _collect_beat(
 def reduced(form: Form) -> Form:
     """The form with every known square replaced: sqrt(p)^2 is p, abs(p)^2 is p^2."""
     ring = form.ring
-    heavy = [k for k in form.terms if any(e > 1 and a in ring.squares for a, e in k[0])]
+    heavy = {k: None for k in form.terms if any(e > 1 and a in ring.squares for a, e in k[0])}
     if not heavy:
         return form
-    parts = [Form(ring, {k: c for k, c in form.terms.items() if k not in set(heavy)})]
+    groups: dict[tuple[int, int], Terms] = {}  # (atom, exponent of its square) -> the rest
     for key in heavy:
         atom, exponent = next((a, e) for a, e in key[0] if e > 1 and a in ring.squares)
         rest = tuple((a, e if a != atom else e % 2) for a, e in key[0] if a != atom or e % 2)
-        piece = Form(ring, {(rest, key[1], key[2]): form.terms[key]})
-        parts.append(piece * ring.squares[atom] ** (exponent // 2))
-    return total(ring, parts)
+        _collect(groups.setdefault((atom, exponent // 2), {}), (rest, *key[1:]), form.terms[key])
+    light = Form(ring, {k: c for k, c in form.terms.items() if k not in heavy})
+    parts = [
+        Form(ring, terms) * ring.squares[atom] ** exponent
+        for (atom, exponent), terms in groups.items()
+    ]
+    return total(ring, [light, *parts])
 
 
 def split_content(form: Form) -> tuple[Form, Form]:

@@ -14,7 +14,7 @@ from eomgen.checks.power import imbalance, motion_of
 from eomgen.checks.samples import Samples
 from eomgen.compile import Machine
 from eomgen.errors import CheckError
-from eomgen.mechanics import speeds
+from eomgen.mechanics import motions, speeds
 from eomgen.model import Claim
 
 TOLERANCE = 1e-8
@@ -47,7 +47,7 @@ def count(machine: Machine) -> int:
 
 
 def _degrees_of_freedom(machine: Machine, freedom: int | None) -> list[str]:
-    stated, count = machine.model.expect.dof, len(machine.model.coordinates)
+    stated, count = machine.model.expect.dof, len(speeds.symbols(machine.model))
     found = count if freedom is None else freedom
     if stated in (None, found):
         return []
@@ -56,9 +56,8 @@ def _degrees_of_freedom(machine: Machine, freedom: int | None) -> list[str]:
 
 
 def moving_algebra(machine: Machine) -> Algebra[Node]:
-    """The scene's algebra with q'' bound to the accelerations of the motion."""
-    pairs = zip(machine.model.coordinates, machine.accelerations, strict=True)
-    return machine.kinematics.algebra.extended({c.acceleration: a for c, a in pairs})
+    """The scene's algebra with q'' and u' bound to the accelerations of the motion."""
+    return machine.kinematics.algebra.extended(machine.motion)
 
 
 def _equations(machine: Machine, samples: Samples) -> list[str]:
@@ -119,9 +118,8 @@ def _same(
     pair = [algebra.of(claim.residual), -found]
     tests = [pair]
     if constant:
-        one = algebra.number(1)
-        state = [c.symbol for c in machine.model.coordinates]
-        tests = [[algebra.along(value, {q: one}) for value in pair] for q in state]
+        directions = [m.direction for m in motions.of(machine.model, algebra)]
+        tests = [[algebra.along(value, d) for value in pair] for d in directions]
     error = max(worst(machine, samples, terms) for terms in tests)
     return [f"`{claim.text}` is not the energy found, relative error {error:.1e}"] * (
         error > TOLERANCE

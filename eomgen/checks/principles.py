@@ -118,6 +118,8 @@ def moving(at: Bench) -> dict[sp.Symbol, Any]:
     values = dict(zip(bindings, at.nodes(list(bindings.values())), strict=True))
     pairs = zip(machine.model.coordinates, at.nodes(machine.accelerations), strict=True)
     values |= {q.acceleration: a for q, a in pairs}
+    own = zip(machine.model.speeds, at.nodes(machine.solution[0]), strict=False)
+    values |= {s.rate: a for s, a in own}
     values |= {lagrange.multiplier_symbol(row.name): 0.0 for row in machine.rows}
     if machine.kept:
         names = [row.name for row in machine.schur.rows]

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eomgen.algebra.normal import Form
-from eomgen.mechanics import free_bodies_loads, free_bodies_rows, lagrange
+from eomgen.mechanics import free_bodies_loads, free_bodies_rows, motions
 from eomgen.mechanics.efforts import Effort
 from eomgen.mechanics.equations import Equation
 from eomgen.mechanics.free_bodies_rows import BodyRow
@@ -51,7 +51,7 @@ class VirtualWork:
 def derive(kinematics: Kinematics[Form]) -> VirtualWork:
     """The virtual works of a scene with bodies, collected by the delta q."""
     rows = free_bodies_rows.bare(kinematics)
-    names = [q.name for q in kinematics.model.coordinates]
+    names = [m.name for m in motions.of(kinematics.model, kinematics.algebra)]
     inertias = free_bodies_rows.weighted(kinematics, rows, "inertia")
     return VirtualWork(
         inertial=tuple(Inertial(row, virtual(kinematics, row.weights)) for row in rows),
@@ -63,10 +63,8 @@ def derive(kinematics: Kinematics[Form]) -> VirtualWork:
 
 def virtual(kinematics: Kinematics[Form], weights: Vector[Form]) -> Form:
     """The sum of (d velocity / d q') delta q."""
-    deltas = [
-        kinematics.algebra.of(lagrange.virtual_symbol(q)) for q in kinematics.model.coordinates
-    ]
-    return dot(weights, deltas)
+    moving = motions.of(kinematics.model, kinematics.algebra)
+    return dot(weights, [kinematics.algebra.of(m.virtual_symbol) for m in moving])
 
 
 def _applied(kinematics: Kinematics[Form], effort: Effort[Form]) -> Applied:

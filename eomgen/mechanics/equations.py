@@ -64,6 +64,7 @@ class LagrangeRow:
     slope: Form  # dL/dq
     dissipation: Form  # dD/dq'
     force: Form  # Q, by virtual work, of what has neither potential nor dissipation function
+    gyroscopic: Form | None = None  # of a turn: the component of w x dL/dw, beside d/dt(dL/dw)
 
 
 @dataclass(frozen=True)

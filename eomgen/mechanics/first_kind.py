@@ -10,20 +10,20 @@ resultants of all that acts on each body but its weight, the equations of the se
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import sympy as sp
 
-from eomgen.algebra import normal
 from eomgen.algebra.normal import Form
-from eomgen.mechanics import free_bodies_rows, newton_euler_loads
-from eomgen.mechanics.equations import Equation, multiplier_name
+from eomgen.mechanics import energies, free_bodies_rows, newton_euler_loads
+from eomgen.mechanics.equations import Contribution, Equation, multiplier_name
 from eomgen.mechanics.free_bodies_rows import BodyRow
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.lagrange import Lagrangian
 from eomgen.mechanics.vectors import add
-from eomgen.model import AXES, Coordinate
+from eomgen.model import AXES
 
 
 @dataclass(frozen=True)
@@ -45,21 +45,41 @@ class FirstKind:
     equations: tuple[Equation, ...]  # without multipliers
 
 
+class Rest(Lagrangian):
+    """What is left for the coordinates where the masses have Cartesian ones."""
+
+    @cached_property
+    def kinetic(self) -> tuple[Contribution[Form], ...]:
+        """Shares of T without translation."""
+        return tuple(s for s in energies.kinetic(self.kinematics) if s.kind != "translation")
+
+    @cached_property
+    def potential(self) -> tuple[Contribution[Form], ...]:
+        """Shares of V without weights."""
+        return tuple(s for s in energies.potential(self.kinematics) if s.kind != "gravity")
+
+    @property
+    def forces(self) -> list[Form]:
+        """All that is applied, on the right side."""
+        return [e.applied - e.damping - e.elastic - e.other for e in self.equations]
+
+
 def derive(kinematics: Kinematics[Form]) -> FirstKind:
     """The equations of a free scene with bodies."""
-    lagrangian = Lagrangian(kinematics)
+    rest_of = Rest(kinematics)
     rows = tuple(_rows(kinematics))
     held = [r.row for r in rows]
+    tied = free_bodies_rows.weighted(kinematics, held, "reaction")
     rest = tuple(
-        _rest(lagrangian, q, [r.row.weights[j] * r.row.reaction for r in rows])
-        for j, q in enumerate(kinematics.model.coordinates)
+        replace(e, applied=right, reaction=-work)
+        for e, right, work in zip(rest_of.equations, rest_of.forces, tied, strict=True)
     )
     inertias, weights = (
         free_bodies_rows.weighted(kinematics, held, part) for part in ("inertia", "applied")
     )
     return FirstKind(
         rows,
-        lagrangian.sum(s for s in lagrangian.kinetic if s.kind != "translation"),
+        rest_of.kinetic_energy,
         rest,
         free_bodies_rows.balanced(
             [e.name for e in rest],
@@ -77,18 +97,3 @@ def _rows(kinematics: Kinematics[Form]) -> Iterator[CartesianRow]:
             symbol = sp.Symbol(multiplier_name(f"{row.body}.{row.axis}"), real=True)
             held = replace(row, applied=weight, reaction=kinematics.algebra.of(symbol))
             yield CartesianRow(held, kinematics.position(row.body)[axis], symbol)
-
-
-def _rest(lagrangian: Lagrangian, q: Coordinate, shares: Sequence[Form]) -> Equation:
-    """What is left for a coordinate where the masses have Cartesian coordinates."""
-    rotation = lagrangian.sum(s for s in lagrangian.kinetic if s.kind != "translation")
-    potential = lagrangian.sum(s for s in lagrangian.potential if s.kind != "gravity")
-    momentum = lagrangian.partial(rotation, q.rate)
-    inertia = lagrangian.kinematics.rate(momentum) - lagrangian.partial(rotation, q.symbol)
-    damping = lagrangian.partial(lagrangian.dissipation_function, q.rate)
-    slope = lagrangian.partial(potential, q.symbol)
-    (equation,) = free_bodies_rows.balanced(
-        [q.name], [inertia], [lagrangian.force(q) - slope - damping]
-    )
-    ring = inertia.ring
-    return replace(equation, reaction=-normal.total(ring, shares))

@@ -119,7 +119,7 @@ def hinges_of(kinematics: Closed) -> list[Hinge]:
 def _is_counted(kinematics: Closed, hinges: Sequence[Hinge]) -> bool:
     """Whether the freedoms of the joints are those of the scene: no two bodies share one."""
     free = sum(len(joints.independent(list(h.twists.values()))) for h in hinges if h.twists)
-    return free == len(kinematics.model.coordinates)
+    return free == len(loads.varied(kinematics))
 
 
 def _placed(kinematics: Closed, hinges: Sequence[Hinge], found: loads.Loads) -> Wrenches | None:

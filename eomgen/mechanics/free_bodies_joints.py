@@ -20,6 +20,7 @@ from eomgen.algebra.arithmetic import FLOAT
 from eomgen.algebra.closed import Evaluation
 from eomgen.algebra.normal import Form
 from eomgen.mechanics import newton_euler
+from eomgen.mechanics.free_bodies_loads import varied
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.newton_euler_tree import Joint
 from eomgen.mechanics.vectors import Vector, cross, dot, scale, subtract
@@ -82,9 +83,7 @@ def _motion_at(kinematics: Closed, body: str, place: Vector[Form], turns: bool) 
 def _partials(kinematics: Closed, motion: Vector[Form]) -> dict[int, Vector[Form]]:
     """Those columns of the twist that are not zero."""
     algebra, one = kinematics.algebra, kinematics.algebra.number(1)
-    columns = (
-        tuple(algebra.along(c, {q.rate: one}) for c in motion) for q in kinematics.model.coordinates
-    )
+    columns = (tuple(algebra.along(c, {u: one}) for c in motion) for u in varied(kinematics))
     return {
         j: column for j, column in enumerate(columns) if not all(algebra.is_zero(c) for c in column)
     }

@@ -9,7 +9,14 @@ import sympy as sp
 
 from eomgen.algebra import normal
 from eomgen.algebra.normal import Form
-from eomgen.mechanics import constraints, efforts, lagrange, newton_euler, newton_euler_loads
+from eomgen.mechanics import (
+    constraints,
+    efforts,
+    lagrange,
+    motions,
+    newton_euler,
+    newton_euler_loads,
+)
 from eomgen.mechanics import newton_euler_tree as tree
 from eomgen.mechanics.efforts import Effort
 from eomgen.mechanics.kinematics import Kinematics
@@ -88,7 +95,7 @@ def multiplied(kinematics: Closed) -> Loads:
 
 def nothing_along(kinematics: Closed) -> tuple[Form, ...]:
     """No force along any coordinate."""
-    return (kinematics.algebra.number(0),) * len(kinematics.model.coordinates)
+    return (kinematics.algebra.number(0),) * len(varied(kinematics))
 
 
 def _pushed(kinematics: Closed, found: Wrenches, pushes: Iterator[Push[Form]]) -> Iterator[str]:
@@ -112,7 +119,9 @@ def varied(kinematics: Closed) -> tuple[sp.Symbol, ...]:
     """The symbols of the velocities: the speeds where the scene moves by them, else the rates."""
     model = kinematics.model
     moving = tuple(s.symbol for s in model.speeds if s.symbol in kinematics.flow.derivatives)
-    return moving or tuple(q.rate for q in model.coordinates)
+    if moving and len(moving) == len(model.speeds):
+        return moving
+    return tuple(m.rate for m in motions.of(model, kinematics.algebra))
 
 
 def _generalized(kinematics: Closed, found: Sequence[Effort[Form]]) -> tuple[Form, ...]:

@@ -9,6 +9,7 @@ from operator import attrgetter
 from eomgen.algebra import normal
 from eomgen.algebra.normal import Form
 from eomgen.mechanics import free_bodies_loads as loads
+from eomgen.mechanics import motions
 from eomgen.mechanics.equations import Equation
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.newton_euler import Wrench
@@ -126,7 +127,7 @@ def eliminated(
 ) -> tuple[Equation, ...]:
     """The equation of each coordinate: inertia = applied + what acts along coordinates."""
     inertias, forces = (weighted(kinematics, rows, part) for part in ("inertia", "applied"))
-    names = [q.name for q in kinematics.model.coordinates]
+    names = [m.name for m in motions.of(kinematics.model, kinematics.algebra)]
     return balanced(names, inertias, add(forces, other))
 
 

@@ -47,7 +47,7 @@ def kinematics_over_speeds(model: Model) -> Kinematics[Form]:
     derivatives = {s: d for s, d in plain.flow.derivatives.items() if s not in old} | rates
     derivatives |= {u.symbol: algebra.of(u.rate) for u in model.speeds}
     bound: dict[sp.Symbol, Form] = {q.rate: rates[q.symbol] for q in model.coordinates}
-    return Kinematics(model, algebra.extended(bound), Flow(rates, derivatives))
+    return Kinematics(model, algebra.extended(bound), Flow(rates, derivatives, plain.flow.spins))
 
 
 def derive(kinematics: Kinematics[Form]) -> Kane:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import sympy as sp
 
 from eomgen.algebra.closed import Evaluation
 from eomgen.algebra.normal import Form
 from eomgen.algebra.scalar import Algebra
-from eomgen.mechanics import speeds
+from eomgen.mechanics import motions, speeds
 from eomgen.mechanics.equations import Equation
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.vectors import dot
@@ -26,18 +27,32 @@ def project(
     if not model.speeds:
         return (), equations
     rates = speeds.rates(model, algebra)
+    named = tuple(replace(e, name=s.name) for e, s in zip(equations, model.speeds, strict=True))
+    if all(s.symbol == s.formula for s in speeds.plain(model)):
+        return rates, named  # the speeds are rates, but for those of quaternions
     substitute = _substitution(kinematics, rates)
     in_speeds = [
-        Equation(e.name, **{part: substitute(getattr(e, part)) for part in PARTS})
-        for e in equations
+        Equation(e.name, **{part: substitute(getattr(e, part)) for part in PARTS}) for e in named
     ]
+    return rates, _projected(kinematics, rates, in_speeds)
+
+
+def _projected(
+    kinematics: Kinematics[Form], rates: Sequence[Form], equations: Sequence[Equation]
+) -> tuple[Equation, ...]:
+    """The sums of dq'/du * equation of q; what belongs to a quaternion stays."""
+    model, algebra = kinematics.model, kinematics.algebra
+    own = motions.plain(model)
+    moving = [r for c, r in zip(model.coordinates, rates, strict=True) if c in own]
     one = algebra.number(1)
     result = []
-    for speed in model.speeds:
-        weights = [algebra.along(r, {speed.symbol: one}) for r in rates]
-        parts = {part: dot(weights, [getattr(e, part) for e in in_speeds]) for part in PARTS}
+    for speed in speeds.plain(model):
+        weights = [algebra.along(r, {speed.symbol: one}) for r in moving]
+        parts = {
+            part: dot(weights, [getattr(e, part) for e in equations[: len(own)]]) for part in PARTS
+        }
         result.append(Equation(speed.name, **parts))
-    return rates, tuple(result)
+    return (*result, *equations[len(own) :])
 
 
 def _substitution(kinematics: Kinematics[Form], rates: tuple[Form, ...]) -> Callable[[Form], Form]:

@@ -9,6 +9,7 @@ import re
 import unicodedata
 from collections.abc import Iterator, Mapping
 
+from eomgen.mechanics import motions
 from eomgen.mechanics.equations import virtual_name
 from eomgen.model import Coordinate, Input, Model, Parameter, Prescribed
 from eomgen.render.latex_override import GREEK, checked
@@ -89,6 +90,11 @@ def table(model: Model) -> Mapping[str, str]:
         names[symbol] = dotted(spelling, dots)
     for c in model.coordinates:
         names[virtual_name(c.name)] = rf"\delta {names[c.symbol.name]}"
+    for q in model.quaternions:
+        for i, axis in enumerate(motions.AXES):
+            name = motions.turn_name(q, i)
+            names[name] = rf"\pi_{{{spelled(q.name)},{axis}}}"
+            names[virtual_name(name)] = rf"\delta {names[name]}"
     return names
 
 
@@ -104,6 +110,8 @@ def _symbols(model: Model) -> Iterator[tuple[str, str, int]]:
         yield place.rate.name, spelling, 1
         yield place.acceleration.name, spelling, 2
     for speed in model.speeds:
+        if speed.symbol == speed.formula:
+            continue  # a rate, which is spelled above
         spelling = of_record(speed.name, speed.description.latex)
         yield speed.symbol.name, spelling, 0
         yield speed.rate.name, spelling, 1

@@ -34,6 +34,7 @@ def style(model: Model) -> Style:
         dotted=lambda name: latex_names.dotted(name, 1),
         accelerated=lambda name: latex_names.dotted(name, 2),
         partial=lambda what, by: rf"\frac{{\partial {what}}}{{\partial {by}}}",
+        gyroscopic=gyroscopic,
         rate=lambda what: rf"\frac{{d}}{{dt}} {bracketed(what)}",
         display=display,
         pairs=pairs,
@@ -58,6 +59,12 @@ def _index(name: str) -> str:
         return latex_names.spelled(name)
     words = (escaped(part) for part in re.split(r"[\s_]+", name))
     return rf"\mathrm{{{BLANK.join(words)}}}"
+
+
+def gyroscopic(name: str, axis: str) -> str:
+    """The component of w x dL/dw about an axis of the turned frame."""
+    omega = rf"\boldsymbol{{\omega}}_{{{latex_names.spelled(name)}}}"
+    return rf"\left({omega} \times \frac{{\partial L}}{{\partial {omega}}}\right)_{{{axis}}}"
 
 
 def display(rows: Rows) -> str:

@@ -9,11 +9,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from eomgen.algebra import normal
+from eomgen.algebra.closed import ClosedForm
 from eomgen.algebra.normal import Form
+from eomgen.mechanics import motions
 from eomgen.mechanics.equations import Contribution, Derivation, Equation, LagrangeRow
 from eomgen.mechanics.free_bodies import FreeBodies
+from eomgen.mechanics.motions import Motion
 from eomgen.mechanics.principles import Worked
-from eomgen.model import AXES, SPACES, Coordinate
+from eomgen.model import AXES, SPACES, Quaternion
 from eomgen.render import (
     arrange,
     arrange_equation,
@@ -94,7 +97,7 @@ def context(notes: Notes, style: Style) -> dict[str, object]:
         **_places(page),
         **_energies(page),
         **_forces(page),
-        "steps": tuple(_step(page, c, r) for c, r in _by_coordinate(page)),
+        "steps": tuple(_step(page, m, r) for m, r in _by_motion(page)),
         **_equations(page),
         "matrix": notes_matrix.matrix(page),
         **notes_reactions.tables(page, notes.free),
@@ -102,8 +105,9 @@ def context(notes: Notes, style: Style) -> dict[str, object]:
     }
 
 
-def _by_coordinate(page: Page) -> Iterator[tuple[Coordinate, LagrangeRow]]:
-    return zip(page.derivation.model.coordinates, page.derivation.rows, strict=True)
+def _by_motion(page: Page) -> Iterator[tuple[Motion[Form], LagrangeRow]]:
+    moving = motions.of(page.derivation.model, ClosedForm())
+    return zip(moving, page.derivation.rows, strict=True)
 
 
 def _places(page: Page) -> dict[str, object]:
@@ -196,17 +200,17 @@ def _forces(page: Page) -> dict[str, object]:
     ring = d.kinetic_energy.ring
     work = normal.total(ring, (share.value for share in d.virtual_work))
     rows = [
-        (style.sub("Q", style.symbol(c.symbol.name)), formula(page, arrange.loads, row.force))
-        for c, row in _by_coordinate(page)
+        (style.sub("Q", style.symbol(m.displacement)), formula(page, arrange.loads, row.force))
+        for m, row in _by_motion(page)
     ]
     total = (style.symbol("delta W"), formula(page, arrange.work, work))
     return {"forces": style.display([total, *rows]) if work.terms else ""}
 
 
-def _step(page: Page, coordinate: Coordinate, row: LagrangeRow) -> dict[str, str]:
-    """The partial derivatives of one coordinate."""
-    style, own = page.style, coordinate.acceleration.name
-    q, rate = style.symbol(coordinate.symbol.name), style.symbol(coordinate.rate.name)
+def _step(page: Page, motion: Motion[Form], row: LagrangeRow) -> dict[str, str]:
+    """The partial derivatives of one motion."""
+    style, own = page.style, motion.acceleration.name
+    q, rate = style.symbol(motion.displacement), style.symbol(motion.rate.name)
     momentum = style.partial("L", rate)
 
     def moving(form: Form) -> str:
@@ -217,22 +221,44 @@ def _step(page: Page, coordinate: Coordinate, row: LagrangeRow) -> dict[str, str
         (style.rate(momentum), moving(row.momentum_rate)),
         (style.partial("L", q), moving(row.slope)),
     ]
+    if row.gyroscopic is not None and motion.turn is not None:
+        rows.append((style.gyroscopic(*_turn(motion.turn)), moving(row.gyroscopic)))
     if page.derivation.dissipation:
         rows.append((style.partial("D", rate), moving(row.dissipation)))
     if row.force.terms:
         rows.append((style.sub("Q", q), formula(page, arrange.loads, row.force)))
-    return {"symbol": style.inline(q), "rows": style.display(rows)}
+    said = page.words["steps_for" if motion.turn is None else "steps_turn"]
+    return {"said": said, "symbol": style.inline(q), "rows": style.display(rows)}
+
+
+def _turns_said(page: Page) -> str:
+    """What the virtual turn about an axis is, where there are quaternions."""
+    if not page.derivation.model.quaternions:
+        return ""
+    name = motions.turn_name(page.derivation.model.quaternions[0], 0)
+    return page.words["turns"].format(math=page.style.inline(page.style.symbol(name)))
+
+
+def _turn(turn: tuple[Quaternion, int]) -> tuple[str, str]:
+    """The name of a quaternion and of one of its axes."""
+    return turn[0].name, AXES[turn[1]]
 
 
 def _equations(page: Page) -> dict[str, object]:
     """The equations of motion, in the speeds where the spec has some."""
     d, style = page.derivation, page.style
     speeds = d.model.speeds
-    rates = zip((style.symbol(c.rate.name) for c in d.model.coordinates), d.rates, strict=False)
+    trivial = {s.symbol for s in speeds if s.symbol == s.formula}
+    rates = [
+        (style.symbol(c.rate.name), rate)
+        for c, rate in zip(d.model.coordinates, d.rates, strict=bool(d.rates))
+        if c.rate not in trivial
+    ]
     return {
         "rates": style.display([(q, formula(page, arrange.motion, r)) for q, r in rates]),
         "equations": tuple(_equation(page, e) for e in d.equations),
         "in_speeds": bool(speeds),
+        "turns": _turns_said(page),
         "constraint_equations": notes_links_page.equations(page),
     }
 

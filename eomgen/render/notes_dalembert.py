@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from eomgen.algebra.normal import Form
-from eomgen.mechanics import lagrange
+from eomgen.mechanics import motions
 from eomgen.mechanics.dalembert import Inertial, VirtualWork
-from eomgen.mechanics.equations import Equation
+from eomgen.mechanics.equations import Equation, virtual_name
 from eomgen.render import arrange, notes_steps, tree
 from eomgen.render.notes_page import Page, formula, joined, readable, spelled
 from eomgen.render.tree import Symbol, Tree
@@ -65,7 +65,7 @@ def _inertial_name(page: Page, found: Inertial) -> str:
 
 def _coefficients(page: Page, steps: VirtualWork) -> Iterator[dict[str, str]]:
     """Applied less inertia, and what the constraints add, for each virtual displacement."""
-    deltas = (lagrange.virtual_symbol(q).name for q in page.derivation.model.coordinates)
+    deltas = (virtual_name(name) for name in motions.displacements(page.derivation.model))
     for name, row, tied in zip(deltas, steps.equations, steps.tied, strict=True):
         body = page.style.equation(spelled(page, balance(page, row, tied)), "0")
         yield {"symbol": page.style.inline(page.style.symbol(name)), "body": body}

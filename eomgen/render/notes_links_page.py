@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from eomgen.algebra.normal import Form
+from eomgen.mechanics import speeds
 from eomgen.mechanics.equations import multiplier_name, virtual_name
 from eomgen.model import Constraint
 from eomgen.render import arrange, notes_data, tree
@@ -50,7 +51,9 @@ def _unlinked(page: Page) -> str:
     model = page.derivation.model
     if model.constraints:
         return ""
-    return page.words["coordinates_free"].format(count=len(model.coordinates))
+    count, freedom = len(model.coordinates), len(speeds.symbols(model))
+    said = "coordinates_turns" if model.quaternions else "coordinates_free"
+    return page.words[said].format(count=count, freedom=freedom)
 
 
 def _set(page: Page, links: Links) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from eomgen.mechanics import motions
 from eomgen.mechanics.free_bodies import FreeBodies, Unknown
 from eomgen.render import arrange, notes_steps
 from eomgen.render.notes_page import Page, formula, spelled
@@ -90,10 +91,10 @@ def _sums_said(page: Page, free: FreeBodies) -> str:
 
 def _sums(page: Page, free: FreeBodies) -> Iterator[Row]:
     """How the equations are added for each coordinate."""
-    for j, coordinate in enumerate(page.derivation.model.coordinates):
+    for j, name in enumerate(motions.displacements(page.derivation.model)):
         weights = [notes_steps.moved(page, row.weights[j]) for row in free.rows]
         added = notes_steps.numbered(weights)
-        symbol = page.style.symbol(coordinate.symbol.name)
+        symbol = page.style.symbol(name)
         yield {
             "symbol": page.style.inline(symbol),
             "sum": page.style.inline(spelled(page, notes_steps.in_one_line(added))),

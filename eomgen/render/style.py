@@ -26,6 +26,7 @@ class Style:
     accelerated: Callable[[str], str]  # x_bob: its second rate
     partial: Callable[[str, str], str]  # dL/ds
     rate: Callable[[str], str]  # d/dt (...)
+    gyroscopic: Callable[[str, str], str]  # (w x dL/dw) of a quaternion, about one of its axes
     display: Callable[[Rows], str]  # equations below each other, long ones broken
     pairs: Callable[[Sequence[Rows]], str]  # equations beside each other
     equation: Callable[[str, str], str]  # left = right, broken anywhere

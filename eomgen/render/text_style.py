@@ -37,6 +37,7 @@ def style() -> Style:
         dotted=lambda name: f"{name}′",
         accelerated=lambda name: f"{name}″",
         partial=lambda what, by: f"∂{what}/∂{by}",
+        gyroscopic=lambda name, axis: f"(ω_{name} × ∂L/∂ω_{name})_{axis}",
         rate=lambda what: f"d/dt({what})",
         display=display,
         pairs=lambda rows: display([equation for row in rows for equation in row]),

@@ -69,6 +69,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "no_basis": "No virtual displacement is possible.",
         "coordinates_linked": "The set of coordinates is linked: their number, {count}, is greater"
         " than that of the degrees of freedom, {freedom}.",
+        "coordinates_turns": "The {count} coordinates hold quaternions, each of length one, whose"
+        " parts are not independent: there are {freedom} degrees of freedom.",
         "coordinates_independent": "The coordinates are independent of each other, and yet their"
         " number, {count}, is greater than that of the degrees of freedom, {freedom}.",
         "first_kind": "Lagrange's equations of the first kind",
@@ -81,6 +83,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         " generalized force.",
         "speeds": "The speeds are",
         "rates": "so that the rates are",
+        "turns": "There is no coordinate {math}: it stands for a virtual turn about an axis of the"
+        " turned frame, along which the parts of the quaternion change as they do with the rates.",
         "prescribed": "Prescribed motions",
         "inputs": "Inputs",
         "kinematics": "Positions and velocities",
@@ -95,6 +99,7 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "no_forces": "No other force does virtual work: {math} for every coordinate.",
         "steps": "Lagrange's equations",
         "steps_for": "Coordinate",
+        "steps_turn": "Virtual turn",
         "equation": "The equation of motion is",
         "divided": "Divided by {divisor}, the equation of motion is",
         "equations": "Equations of motion",
@@ -168,6 +173,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "no_basis": "Ningún desplazamiento virtual es posible.",
         "coordinates_linked": "El conjunto de coordenadas es ligado: su número, {count}, es mayor"
         " que el de grados de libertad, {freedom}.",
+        "coordinates_turns": "Las {count} coordenadas contienen cuaterniones de longitud uno, cuyas"
+        " partes no son independientes: hay {freedom} grados de libertad.",
         "coordinates_independent": "Las coordenadas son independientes entre sí y, aun así, su"
         " número, {count}, es mayor que el de grados de libertad, {freedom}.",
         "first_kind": "Ecuaciones de Lagrange de primera especie",
@@ -180,6 +187,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         " forma virtual.",
         "speeds": "Las velocidades generalizadas son",
         "rates": "de modo que",
+        "turns": "No hay una coordenada {math}: designa un giro virtual alrededor de un eje del"
+        " sistema girado; las partes del cuaternión varían con él como con las velocidades.",
         "prescribed": "Movimientos prescritos",
         "inputs": "Entradas",
         "kinematics": "Posiciones y velocidades",
@@ -194,6 +203,7 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "no_forces": "Ninguna otra fuerza realiza trabajo virtual: {math} para cada coordenada.",
         "steps": "Ecuaciones de Lagrange",
         "steps_for": "Coordenada",
+        "steps_turn": "Giro virtual",
         "equation": "La ecuación del movimiento es",
         "divided": "Dividida por {divisor}, la ecuación del movimiento es",
         "equations": "Ecuaciones del movimiento",

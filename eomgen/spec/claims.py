@@ -4,6 +4,7 @@ import sympy as sp
 
 from eomgen.dimension import ENERGY, NONE, Dimension
 from eomgen.model import Claim, Expectation, Output
+from eomgen.spec import quaternions
 from eomgen.spec.formulas import (
     constant,
     description,
@@ -29,7 +30,11 @@ def initial(entries: tuple[Entry, ...], scene: Scene, noun: str = "initial value
     """`q` and `q'` -> exact SI value; the guess, which is a map, is left out."""
     known = [e for e in entries if isinstance(e.value, Scalar)]
     found = {e.key.text: scene.ledger.attempt(_initial, e, scene, noun) for e in known}
-    return {name: value for name, value in found.items() if value is not None}
+    values = {name: value for name, value in found.items() if value is not None}
+    for entry in entries:
+        if isinstance(entry.value, Sequence):
+            values |= scene.ledger.attempt(quaternions.initial, entry, scene) or {}
+    return quaternions.with_rates(scene, values)
 
 
 def guess(entries: tuple[Entry, ...], scene: Scene) -> Values:
@@ -60,6 +65,9 @@ def _coordinate(key: Scalar, scene: Scene, most: int = 0) -> Name:
     name = key.text.rstrip("'")
     order = len(key.text) - len(name)
     known = scene.names.get(name)
+    spins = [s.name for q in quaternions.found(scene) for s in q.speeds] if most else []
+    if name in spins and not order:
+        return Name(name, 0, Span(key.line, key.column, key.text))
     if known is None or known.kind != "coordinate" or order > most:
         fitting = [n for n, k in scene.names.items() if k.kind == "coordinate"]
         noun = "coordinate or rate" if most else "coordinate"

@@ -22,6 +22,7 @@ from eomgen.spec import (
     movers,
     names,
     places,
+    quaternions,
     roles,
 )
 from eomgen.spec.formula import NAME
@@ -71,6 +72,11 @@ def _model(whole: Mapping, root: Mapping, ledger: Ledger) -> Model:
     )
     known = replace(
         known,
+        speeds=quaternions.speeds(scene, known.coordinates, known.speeds),
+        quaternions=quaternions.found(scene),
+    )
+    known = replace(
+        known,
         gravity=_gravity(whole, root, scene),
         points=places.points(_entries(root, "points", scene), scene),
         bodies=places.bodies(_entries(root, "bodies", scene), scene),
@@ -113,9 +119,13 @@ def _described(known: Model, found: Map[str, Dimension | None]) -> Model:
 
     def described(records: tuple[Any, ...]) -> tuple[Any, ...]:
         return tuple(
-            replace(r, description=replace(r.description, dimension=found.get(r.name)))
-            for r in records
+            replace(r, description=replace(r.description, dimension=dimension(r))) for r in records
         )
+
+    def dimension(record: Any) -> Dimension | None:
+        # the rate of a coordinate that serves as a speed has no name of its own in the file
+        own = record.description.dimension if found else None
+        return found.get(record.name, own)
 
     return replace(
         known,

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from eomgen.spec import quaternions
 from eomgen.spec.formulas import field
 from eomgen.spec.language import LANGUAGE
 from eomgen.spec.ledger import Mistake
@@ -78,6 +79,10 @@ def _speeds(root: Mapping, are_there: bool) -> Iterator[Mistake]:
             message = "not supported yet: speeds beside constraints"
             hint = "leave 'speeds' out and write the equations in the rates"
             yield Mistake(entry.key, "E602", message, hint)
+    for entry in _entries(root, "coordinates") if are_there else ():
+        if quaternions.is_quaternion(entry.value):
+            message = "not supported yet: a quaternion beside constraints"
+            yield Mistake(entry.key, "E602", message, "turn by angles")
 
 
 def _entries(root: Mapping, section: str) -> tuple[Entry, ...]:
