@@ -11,8 +11,10 @@ from typing import Any
 
 from eomgen.errors import EomgenError
 from eomgen.mechanics import free_bodies
+from eomgen.mechanics.contact_forms import ContactForms
 from eomgen.mechanics.free_bodies import FreeBodies
 from eomgen.render.notes import Notes
+from eomgen.render.notes_links import Links
 from eomgen.render.targets import TARGETS, Named, render
 from eomgen.render.templating import environment
 from eomgen.spec.report import escaped
@@ -31,14 +33,16 @@ class Wish:
 
 def _notes(study: Study, wish: Wish) -> Named:
     line = check_line(study.report, wish.language)
-    shown = None
+    shown: Links | None = None
+    touching: tuple[ContactForms, ...] = ()
     if study.links is not None:
-        from eomgen.output_links import links
+        from eomgen.output_links import contacts, links
 
+        touching = contacts(study.machine)
         shown = links(study.links.scene.report, study.links.chosen, wish.language)
     worked = study.worked if study.is_worked_apart else None
     free = _free_bodies(study, wish)
-    return Notes(study.derivation, wish.language, line, wish.steps, shown, worked, free)
+    return Notes(study.derivation, wish.language, line, wish.steps, shown, worked, free, touching)
 
 
 def _free_bodies(study: Study, wish: Wish) -> FreeBodies | None:

@@ -53,7 +53,7 @@ ALLOWED: dict[str, set[str]] = {
     "files": {"errors"},
     "shelf": {"errors", "files", "render", "spec"},
     "rest": RECORDS | {"analysis", "mechanics", "render", "spec", "states"},
-    "output_links": {"analysis", "formulation", "render"},
+    "output_links": {"analysis", "compile", "formulation", "mechanics", "render"},
     "outputs": RECORDS
     | {"output_links", "analysis", "mechanics", "study", "render", "checks", "spec"},
     "cli_common": {"errors", "files", "outputs", "spec", "study", "wanted"},

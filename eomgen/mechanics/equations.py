@@ -119,6 +119,14 @@ def virtual_name(coordinate: str) -> str:
     return f"delta {coordinate}"
 
 
+JUMP = "jump "  # what the names of changes of rates begin with
+
+
+def jump_name(coordinate: str) -> str:
+    """The name of the symbol of the change of a coordinate's rate in an impact."""
+    return f"{JUMP}{coordinate}"
+
+
 def multiplier_name(row: str) -> str:
     """The name of the symbol of a row's Lagrange multiplier."""
     return f"lambda {row}"

@@ -38,7 +38,7 @@ def _reaction(
         force = tuple((axis, ((r.name, None),)) for axis, r in zip(AXES, rows, strict=False))
         return Reaction(constraint.reaction, constraint.points[0], force)
     used = _used(kinematics, rows)
-    body = _body_of(kinematics, set(used.values()))
+    body = body_of(kinematics, rows)
     entries = tuple(
         (name if body is None else body[1].get(name, name), _factors(rows, j))
         for j, name in used.items()
@@ -59,8 +59,11 @@ def _used(kinematics: Kinematics[S], rows: Sequence[Row[S]]) -> dict[int, str]:
     }
 
 
-def _body_of(kinematics: Kinematics[S], used: set[str]) -> tuple[str, Mapping[str, str]] | None:
+def body_of(
+    kinematics: Kinematics[S], rows: Sequence[Row[S]]
+) -> tuple[str, Mapping[str, str]] | None:
     """(body, coordinate -> axis) where the rows hold Cartesian coordinates of one body only."""
+    used = set(_used(kinematics, rows).values())
     leaves = {kinematics.algebra.of(c.symbol): c.name for c in kinematics.model.coordinates}
     for body in kinematics.model.bodies:
         places = kinematics.position(body.name)

@@ -10,7 +10,7 @@ import unicodedata
 from collections.abc import Iterator, Mapping
 
 from eomgen.mechanics import motions
-from eomgen.mechanics.equations import virtual_name
+from eomgen.mechanics.equations import jump_name, virtual_name
 from eomgen.model import Coordinate, Input, Model, Parameter, Prescribed
 from eomgen.render.latex_override import GREEK, checked
 
@@ -90,6 +90,7 @@ def table(model: Model) -> Mapping[str, str]:
         names[symbol] = dotted(spelling, dots)
     for c in model.coordinates:
         names[virtual_name(c.name)] = rf"\delta {names[c.symbol.name]}"
+        names[jump_name(c.name)] = rf"\Delta {names[c.rate.name]}"
     for q in model.quaternions:
         for i, axis in enumerate(motions.AXES):
             name = motions.turn_name(q, i)

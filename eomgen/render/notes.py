@@ -12,16 +12,18 @@ from eomgen.algebra import normal
 from eomgen.algebra.closed import ClosedForm
 from eomgen.algebra.normal import Form
 from eomgen.mechanics import motions
-from eomgen.mechanics.equations import Contribution, Derivation, Equation, LagrangeRow
+from eomgen.mechanics.contact_forms import ContactForms
+from eomgen.mechanics.equations import Contribution, Derivation, LagrangeRow
 from eomgen.mechanics.free_bodies import FreeBodies
 from eomgen.mechanics.motions import Motion
 from eomgen.mechanics.principles import Worked
 from eomgen.model import AXES, SPACES, Quaternion
 from eomgen.render import (
     arrange,
-    arrange_equation,
     latex_style,
+    notes_contacts,
     notes_data,
+    notes_equation,
     notes_links_names,
     notes_links_page,
     notes_matrix,
@@ -31,23 +33,19 @@ from eomgen.render import (
     tree,
     words,
 )
-from eomgen.render.arrange_equation import RIGHT
 from eomgen.render.notes_links import Links
 from eomgen.render.notes_page import (
-    ENOUGH,
     How,
     Page,
     arranged,
     formula,
     joined,
-    readable,
     spelled,
 )
 from eomgen.render.style import Style
 from eomgen.render.tree import Tree
 
 REPEATED = 60  # terms of a Lagrangian that is written out below T and V
-PARTS = ("inertia", "damping", "elastic", "gravity", "other", *RIGHT)
 
 
 @dataclass(frozen=True)
@@ -61,6 +59,7 @@ class Notes:
     links: Links | None = None  # what is known of the constraints
     worked: Worked | None = None  # the formalism that was asked for, where it is not as ever
     free: FreeBodies | None = None  # what holds the bodies, where it is shown
+    contacts: tuple[ContactForms, ...] = ()
 
     @property
     def name(self) -> str:
@@ -82,6 +81,7 @@ def context(notes: Notes, style: Style) -> dict[str, object]:
     """Every formula of the notes, spelled."""
     names = notes_links_names.aliases(notes.derivation)
     names = {**names, **notes_principles.aliases(notes.derivation, notes.worked, notes.free)}
+    names = {**names, **notes_contacts.aliases(notes.derivation, notes.contacts)}
     style = notes_links_names.with_multipliers(style, names)
     page = Page(notes.derivation, notes.language, style)
     model = notes.derivation.model
@@ -100,6 +100,7 @@ def context(notes: Notes, style: Style) -> dict[str, object]:
         "steps": tuple(_step(page, m, r) for m, r in _by_motion(page)),
         **_equations(page),
         "matrix": notes_matrix.matrix(page),
+        "contacts": tuple(notes_contacts.contact(page, c) for c in notes.contacts),
         **notes_reactions.tables(page, notes.free),
         **notes_principles.tables(page, notes.worked),
     }
@@ -256,21 +257,8 @@ def _equations(page: Page) -> dict[str, object]:
     ]
     return {
         "rates": style.display([(q, formula(page, arrange.motion, r)) for q, r in rates]),
-        "equations": tuple(_equation(page, e) for e in d.equations),
+        "equations": tuple(notes_equation.shown(page, e) for e in d.equations),
         "in_speeds": bool(speeds),
         "turns": _turns_said(page),
         "constraint_equations": notes_links_page.equations(page),
     }
-
-
-def _equation(page: Page, row: Equation) -> dict[str, str]:
-    """One equation, and the words before it: what it was divided by."""
-    style = page.style
-    count = sum(len(form.terms) for part in PARTS if (form := getattr(row, part)))
-    if count > ENOUGH:
-        return {"body": style.equation(spelled(page, count), "0"), "said": page.words["equation"]}
-    found = arrange_equation.equation(page.arranger, row)
-    left, right = (spelled(page, readable(side)) for side in (found.left, found.right))
-    divisor = "" if found.divisor == tree.ONE else style.inline(style.formula(found.divisor))
-    said = page.words["divided"].format(divisor=divisor) if divisor else page.words["equation"]
-    return {"body": style.equation(left, right), "said": said}

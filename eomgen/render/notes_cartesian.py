@@ -12,7 +12,9 @@ from eomgen.render.tree import Symbol
 
 def tables(page: Page, steps: FirstKind) -> dict[str, object]:
     """Everything that the template of the first kind shows beside the common parts."""
-    freedom, links = len(page.derivation.model.coordinates), len(steps.rows)
+    model = page.derivation.model
+    # the length of a quaternion is a constraint too
+    freedom, links = len(steps.rest), len(steps.rows) + len(model.quaternions)
     rotation = (page.style.sub("T", "0"), formula(page, arrange.kinetic, steps.rotation))
     return {
         "count_said": page.words["cartesian_said"].format(

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from eomgen.algebra.normal import Form
 from eomgen.mechanics.free_bodies_rows import BodyRow
 from eomgen.render import arrange, arrange_equation, latex_names, notes_links_page, tree
-from eomgen.render.notes_page import ENOUGH, Page, arranged, readable, spelled
+from eomgen.render.notes_page import ENOUGH, How, Page, arranged, readable, spelled
 from eomgen.render.tree import Number, Product, Symbol, Tree
 
 Row = Mapping[str, str]
@@ -63,6 +63,14 @@ def _acceleration(page: Page, form: Form) -> Tree | int:
     """s'' + l phi'' cos phi - ..., or l (phi'' sin phi + ...) where all terms share a factor."""
     shared = arranged(page, arrange.loads, form)
     return shared if isinstance(shared, Product) else moved(page, form)
+
+
+def reduced(page: Page, how: How, form: Form) -> Tree | int:
+    """A form with what stands on both sides of its fractions cancelled."""
+    found = arranged(page, how, form)
+    if isinstance(found, int):
+        return found
+    return tree.total(tuple(map(notes_links_page.cancelled, tree.terms_of(found))))
 
 
 def acting(page: Page, applied: Form, reaction: Form) -> Tree | int:
