@@ -14,7 +14,8 @@ ALLOWED: dict[str, set[str]] = {
     "dimension": set(),
     "model": {"dimension"},
     "program": set(),
-    "spec": {"errors", "dimension", "model"},
+    "latex_name": {"errors"},
+    "spec": {"errors", "dimension", "latex_name", "model"},
     "algebra": {"errors", "program", "model"},
     "mechanics": RECORDS | {"algebra"},
     "interpreter": RECORDS | {"algebra"},
@@ -46,7 +47,7 @@ ALLOWED: dict[str, set[str]] = {
     | {"compile_contacts", "evaluate_contacts"}
     | {"algebra", "evaluate", "interpreter", "reactions", "states", "study_linked"},
     "answers": RECORDS | {"evaluate_joints", "evaluate", "evaluate_linked", "states", "study"},
-    "render": RECORDS | {"algebra", "mechanics"},
+    "render": RECORDS | {"algebra", "latex_name", "mechanics"},
     "numerics": RECORDS | {"render", "interpreter"},
     "states": RECORDS | {"mechanics"},
     "evaluate": RECORDS | {"mechanics", "compile", "interpreter", "render", "numerics", "states"},

@@ -9,10 +9,10 @@ import re
 import unicodedata
 from collections.abc import Iterator, Mapping
 
+from eomgen.latex_name import GREEK, checked
 from eomgen.mechanics import motions
 from eomgen.mechanics.equations import jump_name, virtual_name
 from eomgen.model import Coordinate, Input, Model, Parameter, Prescribed
-from eomgen.render.latex_override import GREEK, checked
 
 LIKE_LATIN = {
     "omicron": "o", "Alpha": "A", "Beta": "B", "Epsilon": "E", "Zeta": "Z", "Eta": "H",
