@@ -119,7 +119,7 @@ BAD = (
         changed("{phi: rad}", r"{phi: {unit: rad, latex: '\input{x}'}}"),
         "6:40 E516",
     ),
-    Bad("LaTeX of a parameter", changed("m: 2 kg", "m: {value: 2 kg, latex: m_}"), "5:36 E516"),
+    Bad("LaTeX of a parameter", changed("m: 2 kg", "m: {value: 2 kg, latex: m_}"), "5:38 E516"),
     Bad("400 digits", changed("l: 1 m", "l: " + "9" * 400 + " m"), "5:26 E202"),
     Bad("1e400", changed("mass: m", "mass: m*1e400"), "10:17 E202"),
     Bad("long formula", changed("mass: m", "mass: " + "m+" * 1500 + "m"), "10:15 E202"),
