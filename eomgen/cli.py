@@ -21,7 +21,9 @@ from eomgen.cli_common import (
     epilog,
     format_option,
     formulation_option,
+    functions_option,
     language_option,
+    list_functions_option,
     method_option,
     print_files,
     reporting,
@@ -29,6 +31,8 @@ from eomgen.cli_common import (
     studied,
     templates_option,
 )
+from eomgen.cli_import import import_robot
+from eomgen.cli_regressor import regressor
 from eomgen.errors import EomgenError, UsageError
 from eomgen.wanted import Wanted, wanted
 
@@ -98,17 +102,22 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 @method_option
 @click.option("--baumgarte", metavar="ALPHA", help="Stabilise multipliers [1/s], only if asked.")
 @click.option("--step", metavar="H", help="The step [s] that caps ALPHA at 0.2/H.")
+@functions_option
+@list_functions_option
 @format_option
 def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -> None:
     """Write lecture notes, C and Python for SPEC."""
     from eomgen.outputs import Wish, rendered
 
     targets = wishes["targets"] or ("latex", "c", "python")
-    wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"])
+    functions = tuple(wishes["functions"])
+    wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"], functions)
     with reporting(format_, files.shown(spec)):
         choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
         choice = replace(choice, method=wishes["method"])
-    made = rendered(studied(spec, format_, choice), wish)
+    study = studied(spec, format_, choice)
+    with reporting(format_, files.shown(spec)):
+        made = rendered(study, wish)
     if output == files.STANDARD:
         print_files(made)
         return
@@ -148,11 +157,14 @@ def check(specs: tuple[str, ...], format_: str) -> None:
 )
 @click.option("--project", is_flag=True, help="Move states to the nearest admissible ones.")
 @click.option("--joints", is_flag=True, help="Add the forces between components (Newton-Euler).")
+@functions_option
+@list_functions_option
 @format_option
 def evaluate(spec: str, state: str | None, format_: str, **wishes: Any) -> None:
     """Compute accelerations, energies, forces and outputs of SPEC at given states, as JSON.
 
-    Without --state the spec's initial values are the state.
+    Without --state the spec's initial values are the state. With --functions the results of these
+    functions are shown instead, row by row.
     """
     import json
 
@@ -210,6 +222,9 @@ def statics(spec: str, format_: str, output: str, force: bool, **wishes: Any) ->
         return
     for path in files.write_all(Path(output), made, force=force):
         click.echo(str(path))
+
+
+commands.add_command(regressor)
 
 
 @commands.command(epilog=epilog("eomgen new my_system", "eomgen new crane --like furuta_pendulum"))
@@ -270,6 +285,9 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
         return
     for path in shelf.eject_templates(names, output):
         click.echo(str(path))
+
+
+commands.add_command(import_robot)
 
 
 def main() -> NoReturn:

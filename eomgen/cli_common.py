@@ -52,6 +52,39 @@ method_option = click.option(
 )
 
 
+def _split(context: click.Context, option: click.Parameter, texts: tuple[str, ...]) -> list[str]:
+    """Names between commas, of all that was given."""
+    return [name.strip() for text in texts for name in text.split(",")]
+
+
+functions_option = click.option(
+    "--functions",
+    multiple=True,
+    callback=_split,
+    metavar="NAME,...",
+    help="Only these functions, repeatable; --list-functions says which there are.",
+)
+
+
+def _list_functions(context: click.Context, option: click.Parameter, wanted: bool) -> None:
+    if not wanted:
+        return
+    from eomgen.functions.table import listing
+
+    click.echo(listing())
+    context.exit()
+
+
+list_functions_option = click.option(
+    "--list-functions",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_list_functions,
+    help="Show what --functions can name, and stop.",
+)
+
+
 def print_files(made: dict[str, str]) -> None:
     """Several files on one stream are told apart by a line each."""
     for name, text in made.items():

@@ -94,7 +94,8 @@ class Machine:
         matrix, bias = self.equations.mass_matrix, self.equations.bias
         right = [q - h for q, h in zip(self.equations.generalized_forces, bias, strict=True)]
         if len(right) > LARGEST_UNROLLED:
-            return tuple(ldl.solve_in_loop(matrix, right)), self.pivots
+            (solution,) = ldl.solve_in_loop(matrix, right)
+            return tuple(solution), self.pivots
         (solution,), pivots = ldl.solve(matrix, right)
         return tuple(solution), self.pivots + pivots
 

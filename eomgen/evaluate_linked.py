@@ -13,7 +13,15 @@ from eomgen.algebra.arithmetic import evaluate as node_values
 from eomgen.algebra.arithmetic import mpmath_arithmetic
 from eomgen.compile_contacts import Touching
 from eomgen.errors import CheckError
-from eomgen.evaluate import GUARD_DIGITS, Engine, Result, arguments, engine, named_results
+from eomgen.evaluate import (
+    GUARD_DIGITS,
+    Engine,
+    Result,
+    arguments,
+    at_each,
+    engine,
+    named_results,
+)
 from eomgen.evaluate_contacts import contacts
 from eomgen.model import Model
 from eomgen.program import Program
@@ -58,13 +66,19 @@ def evaluate(
     """
     using, digits = how
     chosen = engine(using, source, study.scene.model, digits)
-    results = []
-    for number, state in enumerate(states, 1):
-        try:
-            results.append(_result(study, source, chosen, _placed(study, source, state, project)))
-        except CheckError as error:
-            raise CheckError(f"state {number}: {error}") from error
-    return results
+    there = placed(study, source, states, project=project)
+    return at_each(there, lambda state: _result(study, source, chosen, state))
+
+
+def placed(
+    study: LinkedStudy, source: Program, states: Sequence[State], *, project: bool
+) -> list[State]:
+    """The states, each on the constraints: as it is, or projected if that is wanted.
+
+    Raises:
+        CheckError: a state is off the constraints and `project` is not set.
+    """
+    return at_each(states, lambda state: _placed(study, source, state, project))
 
 
 def _result(study: LinkedStudy, source: Program, chosen: Engine, state: State) -> Result:

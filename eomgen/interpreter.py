@@ -71,7 +71,7 @@ class _Memory:
                 self.arithmetic.require_positive(pivot.name, value, size)
             case Solve(names, matrix, right):
                 entries = [self.value(a) for a in (*matrix, *right)]
-                solution = solve_loop(entries, len(names), self.arithmetic)
+                solution = solve_loop(entries, statement.size, self.arithmetic)
                 self.values.update(zip(names, solution, strict=True))
 
 
@@ -80,8 +80,8 @@ def run(
 ) -> list[Any]:
     """The results of a function, row-major.
 
-    arguments: `time` (one entry), `state`, `inputs`, `parameters`; what the function does not read
-    may be absent; with NUMPY an entry may be an array over states.
+    arguments: those of `program.ARGUMENTS` by name, `time` with one entry; what the function does
+    not read may be absent; with NUMPY an entry may be an array over states.
     Raises SingularMassMatrix, and NotDefined where a formula has no real value.
     """
     memory = _Memory(arguments, arithmetic)

@@ -204,6 +204,18 @@ class Force:
 
 
 @dataclass(frozen=True)
+class Drive:
+    """A force along a scalar formula, which it increases; a moment where the formula is an angle.
+
+    It works on the rate of `along` and on nothing else: a motor in a joint, with its reaction.
+    """
+
+    name: str
+    along: sp.Expr
+    force: sp.Expr
+
+
+@dataclass(frozen=True)
 class Moment:
     """Acts on a body: one scalar in a plane, three components in solid space."""
 
@@ -294,6 +306,7 @@ class Model:
     springs: tuple[Spring, ...] = ()
     dampers: tuple[Damper, ...] = ()
     forces: tuple[Force, ...] = ()
+    drives: tuple[Drive, ...] = ()
     moments: tuple[Moment, ...] = ()
     constraints: tuple[Constraint, ...] = ()
     energy: Energy = Energy()

@@ -9,7 +9,7 @@ from math import ceil, log10
 from pathlib import Path
 from typing import Any
 
-from eomgen.errors import EomgenError
+from eomgen.errors import EomgenError, UsageError
 from eomgen.mechanics import free_bodies
 from eomgen.mechanics.contact_forms import ContactForms
 from eomgen.mechanics.free_bodies import FreeBodies
@@ -29,6 +29,7 @@ class Wish:
     language: str = "en"
     templates: Path | None = None
     steps: bool = False
+    functions: tuple[str, ...] = ()  # of C and Python; (): the standard ones
 
 
 def _notes(study: Study, wish: Wish) -> Named:
@@ -53,7 +54,11 @@ def _free_bodies(study: Study, wish: Wish) -> FreeBodies | None:
 
 
 def _program(study: Study, wish: Wish) -> Named:
-    return study.program
+    if not wish.functions:
+        return study.program
+    from eomgen.functions import table
+
+    return table.select(study.program, study.compiled, wish.functions)
 
 
 SUBJECTS: dict[str, Callable[[Study, Wish], Named]] = {
@@ -68,8 +73,10 @@ def rendered(study: Study, wish: Wish) -> dict[str, str]:
     """File name -> text for every target that was asked for.
 
     Raises:
-        UsageError: a template of the user is wrong.
+        UsageError: a template of the user is wrong, or a function is unknown.
     """
+    if wish.functions and not {"c", "python"} & {*wish.targets}:
+        raise UsageError("--functions: only C and Python have functions; add -t c or -t python")
     templates = environment(wish.templates)
     made: dict[str, str] = {}
     for target in dict.fromkeys(wish.targets):

@@ -2,13 +2,14 @@
 
 Every target renders it, the interpreter defines what it means, and nothing behind it knows
 mechanics. Every function of a program has the arguments t, state = (coordinates, speeds), inputs
-and parameters.
+and parameters; some have the accelerations u', derivatives of the speeds, behind the state.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from math import isqrt
 
 import sympy as sp
 
@@ -20,6 +21,11 @@ OPERATORS = {  # name -> number of operands
 }  # fmt: skip
 
 
+ARGUMENTS = ("time", "state", "accelerations", "inputs", "parameters")  # in the order of a call
+AT_A_STATE = ("time", "state", "inputs", "parameters")
+IN_MOTION = ARGUMENTS  # with accelerations that the caller chooses
+
+
 @dataclass(frozen=True)
 class Number:
     """An exact rational constant."""
@@ -29,7 +35,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Read:
-    """One component of an argument: `time` (index 0), `state`, `inputs` or `parameters`."""
+    """One component of an argument of `ARGUMENTS`; of `time` the index is 0."""
 
     argument: str
     index: int
@@ -71,14 +77,20 @@ class RequirePositive:
 
 @dataclass(frozen=True)
 class Solve:
-    """names = A^-1 b by L D L' in a loop, for systems too large to unroll; same pivot rule.
+    """names = A^-1 B by L D L' in a loop, for systems too large to unroll; same pivot rule.
 
-    matrix: the lower triangle of A row by row, n (n + 1) / 2 entries; right: b, n entries.
+    matrix: the lower triangle of A row by row, n (n + 1) / 2 entries; right: B, column by column,
+    n entries for each, as the names.
     """
 
     names: tuple[str, ...]
     matrix: tuple[Expression, ...]
     right: tuple[Expression, ...]
+
+    @property
+    def size(self) -> int:
+        """The number n of equations."""
+        return (isqrt(8 * len(self.matrix) + 1) - 1) // 2
 
 
 Statement = Assign | RequirePositive | Solve
@@ -86,13 +98,17 @@ Statement = Assign | RequirePositive | Solve
 
 @dataclass(frozen=True)
 class Function:
-    """One function: statements, then its results in row-major order of `shape`."""
+    """One function: statements, then its results in row-major order of `shape`.
+
+    arguments: what a caller passes, `AT_A_STATE` or `IN_MOTION`.
+    """
 
     name: str
     about: str
     shape: tuple[int, ...]
     statements: tuple[Statement, ...]
     results: tuple[Expression, ...]
+    arguments: tuple[str, ...] = AT_A_STATE
 
 
 @dataclass(frozen=True)

@@ -60,6 +60,11 @@ class Study:
         return self.worked is not None and self.worked.name not in usual
 
     @property
+    def compiled(self) -> compile.Machine:
+        """What the program was made of: of a linked scene, the chosen formulation."""
+        return self.machine if self.links is None else self.links.chosen.machine
+
+    @property
     def freedom(self) -> int:
         """The degrees of freedom."""
         if self.links is None:
@@ -107,6 +112,16 @@ def _by(study: Study, method: str | None) -> Study:
     found = principles.compare(study.derivation, study.machine, drawn, method)
     report = replace(study.report, agreement=found.agreement, principles=found.names)
     return replace(study, report=report, worked=found.worked)
+
+
+def machine_of(text: str | bytes, file: str, wanted: Wanted = AUTO) -> compile.Machine:
+    """The scene on the graph, for whoever has a check of its own; what is linked is studied.
+
+    Raises:
+        SpecError, UsageError, CheckError: as `of_text`.
+    """
+    model = read(text, file)
+    return of_model(model, wanted).compiled if model.constraints else compile.machine_of(model)
 
 
 def _linked(links: LinkedStudy) -> Study:

@@ -25,6 +25,7 @@ ALLOWED: dict[str, set[str]] = {
     "compile_contacts": RECORDS | {"algebra", "mechanics", "compile"},
     "analysis": RECORDS | {"algebra", "mechanics", "compile"},
     "checks": RECORDS | {"algebra", "mechanics", "compile", "analysis", "formulation"},
+    "functions": RECORDS | {"algebra", "analysis", "checks", "compile", "mechanics", "render"},
     "wanted": {"errors"},
     "formulation": RECORDS | {"wanted", "algebra", "analysis", "compile", "mechanics"},
     "reactions": RECORDS | {"algebra", "formulation", "mechanics"},
@@ -46,7 +47,8 @@ ALLOWED: dict[str, set[str]] = {
     "evaluate_linked": RECORDS
     | {"compile_contacts", "evaluate_contacts"}
     | {"algebra", "evaluate", "interpreter", "reactions", "states", "study_linked"},
-    "answers": RECORDS | {"evaluate_joints", "evaluate", "evaluate_linked", "states", "study"},
+    "answers": RECORDS
+    | {"evaluate_joints", "evaluate", "evaluate_linked", "functions", "states", "study"},
     "render": RECORDS | {"algebra", "latex_name", "mechanics"},
     "numerics": RECORDS | {"render", "interpreter"},
     "states": RECORDS | {"mechanics"},
@@ -56,11 +58,16 @@ ALLOWED: dict[str, set[str]] = {
     "rest": RECORDS | {"analysis", "mechanics", "render", "spec", "states"},
     "output_links": {"analysis", "compile", "formulation", "mechanics", "render"},
     "outputs": RECORDS
-    | {"output_links", "analysis", "mechanics", "study", "render", "checks", "spec"},
-    "cli_common": {"errors", "files", "outputs", "spec", "study", "wanted"},
+    | {"output_links", "analysis", "functions", "mechanics", "study", "render", "checks", "spec"},
+    "cli_common": {"errors", "files", "functions", "outputs", "spec", "study", "wanted"},
+    "cli_regressor": {"cli_common", "files", "functions", "study", "wanted"},
+    "urdf": {"__init__", "errors", "spec"},
+    "cli_import": {"cli_common", "errors", "files", "shelf", "spec", "urdf"},
     "cli": {
         "__init__",
+        "cli_import",
         "cli_common",
+        "cli_regressor",
         "errors",
         "files",
         "wanted",

@@ -5,12 +5,24 @@ from functools import cache
 
 import pytest
 import sympy as sp
-from scenes import EXTRA, LINKED, SHIPPED, derivation_of, machine_of, model_of, samples_of, study_of
+from scenes import (
+    EXTRA,
+    LINKED,
+    SHIPPED,
+    derivation_of,
+    machine_of,
+    model_of,
+    samples_of,
+    study_of,
+    text_of,
+)
 
+from eomgen import compile
 from eomgen.algebra import normal
 from eomgen.algebra.arithmetic import FLOAT
 from eomgen.algebra.closed import ClosedForm
-from eomgen.checks import agreement
+from eomgen.algebra.normal import atoms_of
+from eomgen.checks import agreement, samples
 from eomgen.checks import principles as comparison
 from eomgen.checks.evaluation import singly
 from eomgen.errors import CheckError, UsageError
@@ -24,6 +36,7 @@ from eomgen.mechanics import (
     principles,
 )
 from eomgen.mechanics.vectors import add, scale
+from eomgen.spec import read
 from eomgen.wanted import METHODS
 
 TOO_LARGE = {"ball_joints", "bricard", "long_chain"}  # seconds for each of five derivations
@@ -247,3 +260,19 @@ def test_a_formalism_that_differs_is_an_error(monkeypatch):
     monkeypatch.setitem(principles.PRINCIPLES, "kane", replace(row, derive=wrong))
     with pytest.raises(CheckError, match="method kane"):
         comparison.compare(derivation_of(name), machine_of(name), samples_of(name), "newton")
+
+
+def test_a_motor_in_a_joint_acts_on_both_bodies():
+    """The drive along phi turns the rod; the slider feels the opposite force."""
+    text = text_of("slider_pendulum_free").replace(
+        "bodies:", "inputs: {tau: N*m}\nforces: [{along: phi, force: tau}]\nbodies:"
+    )
+    model = read(text.partition("\nexpect:")[0], "driven.yaml")
+    machine, drawn = compile.machine_of(model), samples.draw(model)
+    found = comparison.compare(lagrange.derive(model), machine, drawn, "newton")
+    assert found.worked.steps.by_joints
+    assert found.agreement.proven
+    tau = model.inputs[0].symbol
+    ring = found.worked.steps.rows[0].applied.ring
+    pushed = {r.body for r in found.worked.steps.rows if ring.atom(tau) in atoms_of(r.applied)}
+    assert pushed == {"slider", "bob"}

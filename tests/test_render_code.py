@@ -66,9 +66,9 @@ def test_a_number_outside_the_doubles_is_refused(value):
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_lowering_changes_no_value(name):
     program = PROGRAMS[name]
-    t, *rest = arguments(program, seed=1)
-    given = {"time": [t], **dict(zip(("state", "inputs", "parameters"), rest, strict=True))}
     for function in program.functions:
+        t, *rest = arguments(program, 1, function)
+        given = {"time": [t], **dict(zip(function.arguments[1:], rest, strict=True))}
         expected = run(function, given, FLOAT)
         assert run(lower(function), given, FLOAT) == pytest.approx(expected, rel=1e-14, abs=0)
 

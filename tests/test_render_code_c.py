@@ -82,8 +82,10 @@ def main_program(name):
     """A C program that calls every function of a fixture; its exit code adds up the statuses."""
     program, stem = PROGRAMS[name], prefix(name)
     _, state, inputs, _ = arguments(program, seed=0)
+    passed = {"time": "0", "accelerations": "state", "parameters": "&p"}
     calls = [
-        f"    status += (int){stem}_{f.name}(0, state, inputs, &p, result);"
+        f"    status += (int){stem}_{f.name}("
+        + ", ".join([*(passed.get(a, a) for a in f.arguments), "result);"])
         for f in program.functions
     ]
     return MAIN.format(

@@ -136,7 +136,8 @@ def _solve(draft: _Draft, system: Node) -> None:
     """The statement of a system; its expression lists the names of the solution."""
     entries = [draft.expressions[a] for a in system.operands]
     size: int = system.datum
-    names = tuple(draft.new_name() for _ in range(size))
-    draft.statements.append(Solve(names, tuple(entries[:-size]), tuple(entries[-size:])))
+    start = size * (size + 1) // 2
+    names = tuple(draft.new_name() for _ in entries[start:])
+    draft.statements.append(Solve(names, tuple(entries[:start]), tuple(entries[start:])))
     draft.expressions[system] = Apply("solved", tuple(Value(name) for name in names))
     draft.sizes[system] = 0

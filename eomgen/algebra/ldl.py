@@ -101,13 +101,19 @@ def solve(
     return [substitute(factors, right) for right in rights], tuple(pivots)
 
 
-def solve_in_loop(matrix: Sequence[Sequence[Node]], right: Sequence[Node]) -> list[Node]:
-    """The solution of A x = b as opaque nodes: a program solves it in a loop, with its own checks.
+def solve_in_loop(matrix: Sequence[Sequence[Node]], *rights: Sequence[Node]) -> list[list[Node]]:
+    """The solutions of A x = b for every b as opaque nodes: a program finds them in a loop.
 
-    The nodes depend on all entries but have no derivative.
+    The program checks the pivots itself. The nodes depend on all entries but have no derivative.
     """
-    if not right:
-        return []
-    entries = [matrix[i][j] for i in range(len(right)) for j in range(i + 1)]
-    system = right[0].graph.make("system", (*entries, *right), len(right))
-    return [system.graph.make("solved", (system,), row) for row in range(len(right))]
+    size = len(matrix)
+    if not size or not rights:
+        return [[] for _ in rights]
+    entries = [matrix[i][j] for i in range(size) for j in range(i + 1)]
+    columns = [entry for right in rights for entry in right]
+    graph = columns[0].graph
+    system = graph.make("system", (*entries, *columns), size)
+    return [
+        [graph.make("solved", (system,), size * column + row) for row in range(size)]
+        for column in range(len(rights))
+    ]

@@ -162,6 +162,7 @@ def _scalar(kinematics: Closed) -> Iterator[Effort[Form]]:
     model = kinematics.model
     named = {(e.name, "spring") for e in model.springs if e.along is not None}
     named |= {(e.name, "damper") for e in model.dampers if e.along is not None}
+    named |= {(d.name, "force") for d in model.drives}
     for effort in every(kinematics):
         if effort.kind == "formula" or (effort.name, effort.kind) in named:
             yield effort

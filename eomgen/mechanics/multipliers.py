@@ -63,6 +63,22 @@ def solve(system: Schur, rate: Fraction = Fraction(0)) -> Solution:
     return Solution(accelerations, tuple(multipliers), system.pivots + pivots)
 
 
+def responses(
+    system: Schur, matrix: Sequence[Sequence[Node]], columns: Sequence[Sequence[Node]]
+) -> tuple[list[list[Node]], ldl.Pivots]:
+    """a of M a - J' lambda = b, J a = c for every column (b, c), and the pivots."""
+    size = len(matrix)
+    free, _ = ldl.solve(matrix, *(column[:size] for column in columns))
+    rights = [
+        [c - dot(row.jacobian, a) for c, row in zip(column[size:], system.rows, strict=True)]
+        for column, a in zip(columns, free, strict=True)
+    ]
+    shares, pivots = ldl.solve(system.matrix, *rights)
+    pairs = zip(free, shares, strict=True)
+    found = [list(_corrected(a, system.columns, share)) for a, share in pairs]
+    return found, system.pivots + pivots
+
+
 def stabilised(row: Row[Node], rate: Fraction) -> Node:
     """Baumgarte's terms of a row."""
     if row.residual is None:

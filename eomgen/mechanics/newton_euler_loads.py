@@ -18,7 +18,7 @@ from eomgen.mechanics.elongation import Element, length, span
 from eomgen.mechanics.energies import has_potential
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.vectors import Vector, scale
-from eomgen.model import Model
+from eomgen.model import Drive, Model
 
 
 class Scene(Protocol):
@@ -161,8 +161,8 @@ def weight(kinematics: Kinematics[S], mass: sp.Expr) -> Vector[S]:
 def unplaced(scene: Scene) -> Iterator[Unplaced]:
     """Loads along coordinates, energies as formulas, and forces on points that nobody carries."""
     model = scene.kinematics.model
-    elements: tuple[Element, ...] = (*model.springs, *model.dampers)
-    for element in elements:
+    loads: tuple[Element | Drive, ...] = (*model.springs, *model.dampers, *model.drives)
+    for element in loads:
         if element.along is not None:
             used = _coordinates(model, element.along)
             names = ", ".join(c.name for c in model.coordinates if c.symbol in used)

@@ -34,13 +34,14 @@ def about(algebra: Algebra[S], axis: Vector[S], angle: S) -> Matrix[S]:
         (axis[2], zero, -axis[0]),
         (-axis[1], axis[0], zero),
     )
-    return tuple(
-        tuple(
-            (c if i == j else zero) + (axis[i] * axis[j]) * (1 - c) + tilde[i][j] * s
-            for j in range(3)
-        )
-        for i in range(3)
-    )
+    rows = []
+    for i in range(3):
+        # e_i^2 + (1 - e_i^2) cos(a) is 1 or cos(a) where the axis is along x, y or z
+        square = axis[i] * axis[i]
+        row = [(axis[i] * axis[j]) * (1 - c) + tilde[i][j] * s for j in range(3)]
+        row[i] = square + (1 - square) * c
+        rows.append(tuple(row))
+    return tuple(rows)
 
 
 def of(algebra: Algebra[S], turn: Turn | Quaternion) -> Matrix[S]:

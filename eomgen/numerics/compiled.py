@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import CheckError, UsageError
-from eomgen.program import Program
+from eomgen.program import Function, Program
 from eomgen.render.names import prefix
 
 COMPILERS = ("cc", "gcc", "clang")
@@ -36,29 +36,32 @@ class Compiled:
     def call(
         self, function: str, t: float, state: Sequence[float], *rest: Sequence[float]
     ) -> np.ndarray[Any, np.dtype[Any]]:
-        """The results of a function at one state; `rest`: inputs and parameters, in order.
+        """The results of a function at one state; `rest`: what it takes beside, in order.
 
         Raises CheckError where the mass matrix is singular.
         """
-        sizes = _sizes(self.program)
+        called = self.program.function(function)
+        sizes = _sizes(self.program, called)
         kind = REALS[self.real]
         given = [_vector(v, n, kind) for v, n in zip((state, *rest), sizes, strict=True)]
-        shape = self.program.function(function).shape
-        result = np.zeros(shape, kind)
+        result = np.zeros(called.shape, kind)
         symbol = self.library[f"{prefix(self.program.name)}_{function}"]
-        symbol.argtypes = [kind, *[ctypes.POINTER(kind)] * 4]
+        symbol.argtypes = [kind, *[ctypes.POINTER(kind)] * (len(given) + 1)]
         status = symbol(kind(t), *(_pointer(a, kind) for a in (*given, result)))
         if status == SINGULAR:
             raise CheckError(f"{function}: the mass matrix is singular at this state")
         return result
 
 
-def _sizes(program: Program) -> tuple[int, int, int]:
-    return (
-        len(program.coordinates) + len(program.speeds),
-        len(program.inputs),
-        len(program.parameters),
-    )
+def _sizes(program: Program, function: Function) -> list[int]:
+    """The lengths of what a function takes behind the time."""
+    lengths = {
+        "state": len(program.coordinates) + len(program.speeds),
+        "accelerations": len(program.speeds),
+        "inputs": len(program.inputs),
+        "parameters": len(program.parameters),
+    }
+    return [lengths[argument] for argument in function.arguments[1:]]
 
 
 def _vector(values: Sequence[float], size: int, kind: Any) -> np.ndarray[Any, np.dtype[Any]]:

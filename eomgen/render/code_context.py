@@ -52,8 +52,9 @@ def interface(program: Program, dialect: Dialect) -> dict[str, Any]:
         "outputs": symbols(program.outputs, reserved),
         "functions": functions,
         "operators": tuple(o for o in OPERATORS if o in used),
-        "solve_sizes": tuple(sorted({len(s.names) for s in statements if isinstance(s, Solve)})),
+        "solve_sizes": tuple(sorted({s.size for s in statements if isinstance(s, Solve)})),
         "pivots": any(f.can_fail for f in functions),
+        "in_motion": any("accelerations" in f.takes for f in functions),
     }
 
 

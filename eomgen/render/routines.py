@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from eomgen.program import (
+    ARGUMENTS,
     OPERATORS,
     Assign,
     Expression,
@@ -20,7 +21,6 @@ from eomgen.render.lowered import atoms, expressions, lower, operations
 from eomgen.render.names import escaped, prefix
 
 COUNTED = {"add": "+", "subtract": "-", "negate": "-", "multiply": "*", "divide": "/"}
-ARGUMENTS = ("time", "state", "inputs", "parameters")
 
 
 @dataclass(frozen=True)
@@ -44,6 +44,7 @@ class Step:
     values: tuple[tuple[str, int], ...] = ()  # of a solve: the names that are read, and where
     matrix: tuple[str, ...] = ()
     right: tuple[str, ...] = ()
+    size: int = 0  # of a solve: the number of equations
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,8 @@ class Routine:
     results: tuple[str, ...]
     operators: frozenset[str]
     operations: str  # such as `3 +  5 *  1 sin`
-    uses: tuple[str, ...]  # which of `ARGUMENTS` are read
+    takes: tuple[str, ...]  # which of `ARGUMENTS` a caller passes
+    uses: tuple[str, ...]  # which of these are read
     can_fail: bool  # a pivot is checked
 
 
@@ -86,6 +88,7 @@ def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
         tuple(expression(e, dialect, names) for e in lowered.results),
         frozenset(operations(lowered)),
         _counted(lowered),
+        function.arguments,
         _used(trees),
         _checks_pivots(function),
     )
@@ -96,12 +99,12 @@ def _own_names(program: Program, function: Function) -> frozenset[str]:
     own = {f"{prefix(program.name)}_{kind}" for kind in ("real", "params", "status")}
     for place, statement in enumerate(function.statements, start=1):
         if isinstance(statement, Solve):
-            own |= {f"matrix_of_{place}", f"solution_of_{place}", f"solve_{len(statement.names)}"}
+            own |= {f"matrix_of_{place}", f"solution_of_{place}", f"solve_{statement.size}"}
     return frozenset(own)
 
 
 def _ordered_reads(trees: tuple[Expression, ...]) -> tuple[Read, ...]:
-    """What is read of state, inputs and parameters, by declaration."""
+    """What is read of every argument but the time, by declaration."""
     found = {a for e in trees for a in atoms(e) if isinstance(a, Read) and a.argument != "time"}
     return tuple(sorted(found, key=lambda r: (ARGUMENTS.index(r.argument), r.index)))
 
@@ -118,6 +121,7 @@ def _checks_pivots(function: Function) -> bool:
 def _argument_names(program: Program) -> dict[str, list[str]]:
     return {
         "state": [v.name for v in program.coordinates + program.speeds],
+        "accelerations": [f"{v.name}'" for v in program.speeds],
         "inputs": [v.name for v in program.inputs],
         "parameters": [v.name for v in program.parameters],
     }
@@ -139,6 +143,7 @@ def _step(statement: Statement, dialect: Dialect, names: Names) -> Step:
                 values=tuple((names[v], i) for v, i in places if v in names),
                 matrix=tuple(map(text, matrix)),
                 right=tuple(map(text, right)),
+                size=statement.size,
             )
 
 
@@ -151,5 +156,12 @@ def _counted(function: Function) -> str:
             sign = COUNTED.get(operator, operator)
             counts[sign] = counts.get(sign, 0) + applied[operator]
     parts = [f"{n} {sign}" for sign, n in counts.items()]
-    sizes = [len(s.names) for s in function.statements if isinstance(s, Solve)]
-    return ", ".join(parts + [f"L D L' of {n} x {n}" for n in sizes]) or "none"
+    loops = [s for s in function.statements if isinstance(s, Solve)]
+    return ", ".join(parts + [_loop(s) for s in loops]) or "none"
+
+
+def _loop(solve: Solve) -> str:
+    """A system in words."""
+    columns = len(solve.right) // solve.size
+    many = f" for {columns} right sides" if columns > 1 else ""
+    return f"L D L' of {solve.size} x {solve.size}{many}"

@@ -10,7 +10,7 @@ from typing import Any
 import sympy as sp
 
 from eomgen.dimension import Dimension
-from eomgen.model import Model
+from eomgen.model import Drive, Force, Model
 from eomgen.spec import (
     claims,
     constants,
@@ -70,6 +70,7 @@ def _model(whole: Mapping, root: Mapping, ledger: Ledger) -> Model:
         prescribed=motion.prescribed(_entries(root, "prescribed", scene), scene),
         speeds=motion.speeds(_entries(root, "speeds", scene), scene),
     )
+    pushes = loads.each(root.get("forces"), "force", loads.force, scene)
     known = replace(
         known,
         speeds=quaternions.speeds(scene, known.coordinates, known.speeds),
@@ -82,7 +83,8 @@ def _model(whole: Mapping, root: Mapping, ledger: Ledger) -> Model:
         bodies=places.bodies(_entries(root, "bodies", scene), scene),
         springs=loads.each(root.get("springs"), "spring", loads.spring, scene),
         dampers=loads.each(root.get("dampers"), "damper", loads.damper, scene),
-        forces=loads.each(root.get("forces"), "force", loads.force, scene),
+        forces=tuple(p for p in pushes if isinstance(p, Force)),
+        drives=tuple(p for p in pushes if isinstance(p, Drive)),
         moments=loads.each(root.get("moments"), "moment", loads.moment, scene),
         energy=loads.energy(root.get("energy"), scene),
     )

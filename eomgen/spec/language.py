@@ -168,9 +168,10 @@ DAMPER = Record(
 
 FORCE = Record(
     {
-        "on": Key("point or body that the force acts on", NAME, required=True),
+        "on": Key("point or body that the force acts on", NAME),
         "from": Key("point or body that takes the reaction", NAME),
-        "force": Key("components", VECTOR, required=True),
+        "along": Key("instead of `on`: a formula in the coordinates that it increases", FORMULA),
+        "force": Key("components; along a formula a scalar", VECTOR, required=True),
         "in": Key("world (default) or the body whose axes the components are in", NAME),
     }
 )
