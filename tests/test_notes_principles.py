@@ -119,7 +119,7 @@ def test_linked_displacements_bring_multipliers():
 
 
 def test_resultants_say_what_their_virtual_work_is():
-    text = " ".join(page("skew_arm", "newton").split())
+    text = " ".join(page("rolling_disc_upright", "newton").split())
     assert "that of springs, dampers and multipliers along coordinates is left" in text
     assert "Ideal forces of constraint do no virtual work: " in " ".join(
         page("satellite", "newton").split()

@@ -69,7 +69,12 @@ def test_the_command_line_names_the_rows_of_the_table():
     assert METHODS == principles.NAMES
 
 
-@pytest.mark.parametrize("name", NAMES)
+SLOW = {"spatial_tree", "flyball_governor", "andrews_squeezer"}
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.slow) if n in SLOW else n for n in NAMES]
+)
 def test_every_formalism_that_applies_is_newton_euler_on_the_graph(name):
     for method in principles.applicable(model_of(name)):
         found = principles.worked(model_of(name), method)
