@@ -14,7 +14,9 @@ from typing import Any, NoReturn
 import click
 
 from eomgen import __version__, files
+from eomgen.cli_chart import chart
 from eomgen.cli_common import (
+    compensated_option,
     complain,
     decoded,
     derived,
@@ -22,6 +24,7 @@ from eomgen.cli_common import (
     format_option,
     formulation_option,
     functions_option,
+    integrator_option,
     language_option,
     list_functions_option,
     method_option,
@@ -33,11 +36,13 @@ from eomgen.cli_common import (
 )
 from eomgen.cli_import import import_robot
 from eomgen.cli_regressor import regressor
+from eomgen.cli_simulate import simulate
 from eomgen.errors import EomgenError, UsageError
 from eomgen.wanted import Wanted, wanted
 
 COLLECT_RARELY = 200_000  # a command lives for a second; looking for circles would take a tenth
 SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
+NOTES = frozenset(("latex", "text"))  # targets that show the closed form
 TARGET_NAMES = ("latex", "c", "python", "text")
 
 EXAMPLES = """\b
@@ -70,9 +75,8 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
     from eomgen.outputs import Wish, rendered
 
     wish = Wish(("text",), wishes["language"], wishes["templates"], wishes["steps"])
-    (text,) = rendered(
-        studied(spec, format_, Wanted(formulation, method=wishes["method"])), wish
-    ).values()
+    choice = Wanted(formulation, notes=True, method=wishes["method"])
+    (text,) = rendered(studied(spec, format_, choice), wish).values()
     click.echo(text, nl=False)
 
 
@@ -102,6 +106,8 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 @method_option
 @click.option("--baumgarte", metavar="ALPHA", help="Stabilise multipliers [1/s], only if asked.")
 @click.option("--step", metavar="H", help="The step [s] that caps ALPHA at 0.2/H.")
+@integrator_option
+@compensated_option
 @functions_option
 @list_functions_option
 @format_option
@@ -110,14 +116,26 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
     from eomgen.outputs import Wish, rendered
 
     targets = wishes["targets"] or ("latex", "c", "python")
-    functions = tuple(wishes["functions"])
-    wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"], functions)
+    functions, integrators = tuple(wishes["functions"]), wishes["integrators"]
+    if wishes["compensated"] and not integrators:
+        raise UsageError("--compensated is how integrators add: say --integrator too")
+    targets += ("c-steps",) if integrators else ()
+    wish = Wish(
+        targets,
+        wishes["language"],
+        wishes["templates"],
+        wishes["steps"],
+        functions,
+        integrators,
+        wishes["compensated"],
+    )
     with reporting(format_, files.shown(spec)):
         choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
-        choice = replace(choice, method=wishes["method"])
-    study = studied(spec, format_, choice)
-    with reporting(format_, files.shown(spec)):
-        made = rendered(study, wish)
+        notes = not NOTES.isdisjoint(targets)
+        if wishes["method"] and not notes:
+            raise UsageError("--method is how the notes derive: add -t latex or -t text")
+        choice = replace(choice, notes=notes, method=wishes["method"])
+    made = rendered(studied(spec, format_, choice), wish)
     if output == files.STANDARD:
         print_files(made)
         return
@@ -288,6 +306,8 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
 
 
 commands.add_command(import_robot)
+commands.add_command(simulate)
+commands.add_command(chart)
 
 
 def main() -> NoReturn:

@@ -13,7 +13,7 @@ from eomgen.mechanics.named_reactions import Reaction
 
 def of(scene: Linked) -> tuple[Reaction[Node], ...]:
     """The reactions that the author names."""
-    return named_reactions.of(scene.machine.kinematics, scene.machine.rows)
+    return named_reactions.of(scene.links.kinematics, scene.links.rows)
 
 
 def values(

@@ -1,4 +1,4 @@
-"""What the user wants of a linked scene: a formulation, and stabilised rows if asked for."""
+"""What the user wants: notes, and of a linked scene a formulation and stabilised rows."""
 
 from __future__ import annotations
 
@@ -18,11 +18,13 @@ METHODS = ("newton", "dalembert", "lagrange", "lagrange1", "kane")
 class Wanted:
     """A formulation of `NAMES`; baumgarte: alpha [1/s], zero for none.
 
+    notes: people will read the closed form; else a scene too large for one needs none.
     method: one of `METHODS`, which is shown and compared with the others; None: as ever.
     """
 
     formulation: str = "auto"
     baumgarte: Fraction = Fraction(0)
+    notes: bool = False
     method: str | None = None
 
 

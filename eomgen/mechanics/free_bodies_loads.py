@@ -82,7 +82,7 @@ def multiplied(kinematics: Closed) -> Loads:
     for constraint in kinematics.model.constraints:
         if constraint.kind == "unilateral":
             continue
-        rows = constraints.of(kinematics, constraint)
+        rows = constraints.of(kinematics, constraint, varied(kinematics))
         values = [kinematics.algebra.of(lagrange.multiplier_symbol(r.name)) for r in rows]
         if constraint.points is not None:
             ends = newton_euler_loads.both(constraint.name, *constraint.points, tuple(values))
@@ -142,7 +142,7 @@ def total(kinematics: Closed) -> tuple[Form, ...]:
 
 def constrained(kinematics: Closed) -> tuple[Form, ...]:
     """J' lambda, for each coordinate."""
-    rows = constraints.rows(kinematics)
+    rows = constraints.rows(kinematics, varied(kinematics))
     values = [kinematics.algebra.of(lagrange.multiplier_symbol(r.name)) for r in rows]
     columns = zip(*(r.jacobian for r in rows), strict=True)
     return tuple(dot(c, values) for c in columns) if rows else nothing_along(kinematics)

@@ -163,6 +163,7 @@ def derive(model: Model) -> Derivation:
     lagrangian = Lagrangian(closed_kinematics(model))
     rates, equations = quasi_velocities.project(lagrangian.kinematics, lagrangian.equations)
     links = closed_rows(lagrangian.kinematics)
+    links = quasi_velocities.rows(lagrangian.kinematics, rates, links)
     equations = with_reactions(lagrangian.kinematics, equations, links)
     return Derivation(
         model=model,

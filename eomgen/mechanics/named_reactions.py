@@ -26,7 +26,9 @@ def of(kinematics: Kinematics[S], rows: Sequence[Row[S]]) -> tuple[Reaction[S], 
     """The reactions of two-sided constraints that the author names."""
     constraints = kinematics.model.constraints
     named = [c for c in constraints if c.reaction and c.kind != "unilateral"]
-    return tuple(_reaction(kinematics, c, [r for r in rows if r.constraint is c]) for c in named)
+    return tuple(
+        _reaction(kinematics, c, [r for r in rows if r.constraint.name == c.name]) for c in named
+    )
 
 
 def _reaction(
