@@ -12,7 +12,7 @@ import click
 
 from eomgen import files
 from eomgen.errors import EomgenError, SpecError, UsageError
-from eomgen.wanted import AUTO, NAMES, Wanted
+from eomgen.wanted import AUTO, METHODS, NAMES, Wanted
 
 if TYPE_CHECKING:
     from eomgen.render.code_context import Style
@@ -45,6 +45,11 @@ formulation_option = click.option(
     default="auto",
     show_default=True,
     help="Equations of a scene with constraints.",
+)
+method_option = click.option(
+    "--method",
+    type=click.Choice(METHODS),
+    help="Formalism that is shown, all that apply are compared.  [default: Lagrange's]",
 )
 
 integrator_option = click.option(
