@@ -131,6 +131,9 @@ def choose(scene: Linked, wanted: Wanted = AUTO) -> Formulation:
         return _stabilised(scene, wanted.baumgarte)
     if wanted.formulation != "auto":
         return _asked(scene, wanted.formulation)
+    if scene.model.simulation.formulation is not None:
+        found = _asked(scene, scene.model.simulation.formulation)
+        return replace(found, why="`simulate` of the spec asks for it")
     if scene.touches:
         modes = "stick and slip" if scene.model.guides else "contact and flight"
         return _multiplier_because(scene, f"{modes}, over all coordinates")

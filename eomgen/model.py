@@ -293,6 +293,15 @@ class Output:
 
 
 @dataclass(frozen=True)
+class Simulation:
+    """How the author wants the scene to be run; None where nothing is said."""
+
+    method: str | None = None
+    step: sp.Expr | None = None  # s
+    formulation: str | None = None
+
+
+@dataclass(frozen=True)
 class Model:
     """One mechanical system."""
 
@@ -320,6 +329,7 @@ class Model:
     range: Mapping[str, tuple[sp.Expr, sp.Expr]] = field(default_factory=dict)
     outputs: tuple[Output, ...] = ()
     expect: Expectation = Expectation()
+    simulation: Simulation = Simulation()
     with_units: bool = False  # the spec states units, so every formula is dimension-checked
     digest: str = ""  # sha256 of the spec's text
 

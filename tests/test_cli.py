@@ -17,7 +17,7 @@ from eomgen import __version__, study
 from eomgen.cli import commands
 
 COMMANDS = [
-    "check", "derive", "evaluate", "examples", "generate", "import", "new", "regressor", "schema",
+    "chart", "check", "derive", "evaluate", "examples", "generate", "import", "new", "regressor", "schema",
     "simulate", "statics", "templates",
 ]  # fmt: skip
 EQUATION = "m l² φ″ + d φ′ + m l g sin φ = τ"

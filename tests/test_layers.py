@@ -72,6 +72,11 @@ ALLOWED: dict[str, set[str]] = {
     | {"compile_places", "numerics", "render", "simulate", "simulate_method", "simulate_report"}
     | {"simulate_setup", "simulate_table", "study"},
     "cli_simulate": {"cli_common", "errors", "files", "simulate_run", "wanted"},
+    "chart": RECORDS
+    | {"compile_steps", "formulation", "integrators", "numerics", "render", "simulate"}
+    | {"simulate_method", "simulate_setup", "stepping", "study", "wanted"},
+    "charting": RECORDS | {"chart", "files", "spec", "study"},
+    "cli_chart": {"charting", "cli_common", "errors", "files"},
     "render": RECORDS | {"algebra", "mechanics", "integrators"},
     "numerics": RECORDS | {"render", "interpreter", "integrators"},
     "states": RECORDS | {"mechanics"},
@@ -90,6 +95,7 @@ ALLOWED: dict[str, set[str]] = {
     "cli": {
         "__init__",
         "cli_import",
+        "cli_chart",
         "cli_common",
         "cli_simulate",
         "cli_regressor",
