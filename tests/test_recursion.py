@@ -252,3 +252,21 @@ def test_the_proof_of_a_large_scene_sees_a_forgotten_term(monkeypatch):
     monkeypatch.setattr(rigid, "wrench", forgetful)
     with pytest.raises(CheckError, match="differ"):
         study.of_text(arm(8), "chain.yaml")
+
+
+@pytest.mark.slow
+def test_the_command_line_of_a_scene_without_a_closed_form(call, tmp_path):
+    """Code and numbers without it; notes are refused, with the reason."""
+    (tmp_path / "arm.yaml").write_text(arm(8), encoding="utf-8")
+    checked = call("check", "arm.yaml")
+    assert checked.code == 0
+    said = "8 degrees of freedom; engine: composite inertias and L'DL, inertias lumped, "
+    assert f"arm.yaml: {said}" in checked.output
+    assert "checked: Lagrange by differentiation = recursive Newton-Euler, at 50" in checked.output
+    assert "inverse after forward dynamics = identity below 1e-1" in checked.output
+    assert call("generate", "arm.yaml", "-t", "c").code == 0
+    head = (tmp_path / "arm.c").read_text(encoding="utf-8")[:600]
+    assert " * Engine: composite inertias and L'DL, inertias lumped, " in head
+    refused = call("derive", "arm.yaml")
+    assert refused.code == 2
+    assert "the closed form of this scene takes more than" in refused.errors
