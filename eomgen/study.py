@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from eomgen.study_linked import LinkedStudy
 
 
-# coordinates; above, a scene is proven on the graph unless notes are asked for
+# degrees of freedom; above, a scene is proven on the graph unless notes are asked for
 LARGEST_CLOSED = {"line": 40, "plane": 16, "solid": 6}
 
 
@@ -148,7 +148,7 @@ def _closed(machine: compile.Machine, wanted: Wanted) -> Derivation | None:
     """
     model = machine.model
     needed = wanted.notes or machine.engine is None
-    if not needed and len(model.coordinates) > LARGEST_CLOSED[model.space]:
+    if not needed and len(speeds.symbols(model)) > LARGEST_CLOSED[model.space]:
         return None
     try:
         return lagrange.derive(model)
