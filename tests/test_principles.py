@@ -20,7 +20,7 @@ from scenes import (
 from eomgen import compile
 from eomgen.algebra import normal
 from eomgen.algebra.arithmetic import FLOAT
-from eomgen.algebra.closed import ClosedForm
+from eomgen.algebra.closed import ClosedForm, to_sympy
 from eomgen.algebra.normal import atoms_of
 from eomgen.checks import agreement, samples
 from eomgen.checks import principles as comparison
@@ -281,3 +281,11 @@ def test_a_motor_in_a_joint_acts_on_both_bodies():
     ring = found.worked.steps.rows[0].applied.ring
     pushed = {r.body for r in found.worked.steps.rows if ring.atom(tau) in atoms_of(r.applied)}
     assert pushed == {"slider", "bob"}
+
+
+@pytest.mark.parametrize("name", ["sleigh_speeds", "mass_on_sphere", "four_bar"])
+def test_what_constraints_add_to_kanes_equations_is_what_they_add_to_lagranges(name):
+    """J' lambda over the declared speeds, or over the rates."""
+    found = principles.worked(model_of(name), "kane").steps.tied
+    for tied, row in zip(found, derivation_of(name).equations, strict=True):
+        assert sp.expand(to_sympy(tied) - to_sympy(row.reaction)) == 0
