@@ -14,6 +14,7 @@ from typing import Any, NoReturn
 import click
 
 from eomgen import __version__, files
+from eomgen.cli_chart import chart
 from eomgen.cli_common import (
     compensated_option,
     complain,
@@ -299,6 +300,7 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
 
 commands.add_command(import_robot)
 commands.add_command(simulate)
+commands.add_command(chart)
 
 
 def main() -> NoReturn:

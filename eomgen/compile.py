@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -48,6 +48,7 @@ class Machine:
     kept: tuple[str, ...] = ()  # names of the independent rows, with a multiplier each
     pivots: ldl.Pivots = ()  # that the rates divide by
     baumgarte: Fraction = Fraction(0)  # alpha [1/s] of stabilised rows; zero: none
+    weight: Fraction = Fraction(0)  # w, where M + w J'J has to stand for a singular M
 
     @property
     def model(self) -> Model:
@@ -131,12 +132,22 @@ class Machine:
     @cached_property
     def rows(self) -> tuple[Row[Node], ...]:
         """Every row of the bilateral constraints."""
-        return constraints.rows(self.kinematics)
+        return constraints.rows(self.kinematics, speeds.symbols(self.model))
 
     @cached_property
     def schur(self) -> multipliers.Schur:
         """The Schur complement of the independent rows."""
-        return multipliers.schur(self.equations, [r for r in self.rows if r.name in self.kept])
+        return multipliers.schur(self.equations, self.independent_rows, self.weight)
+
+    @property
+    def independent_rows(self) -> list[Row[Node]]:
+        """The rows with a multiplier each."""
+        return [r for r in self.rows if r.name in self.kept]
+
+    @cached_property
+    def inertia(self) -> tuple[tuple[Node, ...], ...]:
+        """What is divided by: M, or M + w J'J."""
+        return multipliers.inertia(self.equations, self.independent_rows, self.weight)
 
     @cached_property
     def linked(self) -> multipliers.Solution:
@@ -165,24 +176,37 @@ class Machine:
         """q'' = (dq'/du) u' + the rate of q' with u' = 0."""
         if not self.model.speeds:
             return self.solution[0]
-        algebra = self.kinematics.algebra
-        one = algebra.number(1)
+        coasting = (self.kinematics.rate(r) for r in self.rates)
+        return tuple(a + c for a, c in zip(self.turned(self.solution[0]), coasting, strict=True))
+
+    @cached_property
+    def partial_rates(self) -> tuple[tuple[Node, ...], ...]:
+        """N = dq'/du of declared speeds, a row for each coordinate."""
+        algebra, one = self.kinematics.algebra, self.kinematics.algebra.number(1)
         return tuple(
-            dot([algebra.along(r, {s.symbol: one}) for s in self.model.speeds], self.solution[0])
-            + self.kinematics.rate(r)
-            for r in self.rates
+            tuple(algebra.along(r, {s.symbol: one}) for s in self.model.speeds) for r in self.rates
         )
+
+    def turned(self, values: Sequence[Node]) -> tuple[Node, ...]:
+        """From speeds to coordinates: N * values; the values themselves where the speeds are q'."""
+        if not self.model.speeds:
+            return tuple(values)
+        return tuple(dot(row, values) for row in self.partial_rates)
+
+    @property
+    def speeds(self) -> tuple[Node, ...]:
+        """The speeds u."""
+        return tuple(self.kinematics.algebra.of(s) for s in speeds.symbols(self.model))
 
     @cached_property
     def outputs(self) -> tuple[Node, ...]:
         """The author's own formulas."""
-        formulas = [o.formula for o in self.model.outputs]
-        unknown = {c.acceleration for c in self.model.coordinates}
-        unknown |= {s.rate for s in self.model.speeds}
-        algebra = self.kinematics.algebra
-        if any(f.free_symbols & unknown for f in formulas):
-            algebra = algebra.extended(self.motion)
-        return tuple(algebra.of(f) for f in formulas)
+        return self.outputs_with(self.motion if holds_motion(self.model) else {})
+
+    def outputs_with(self, motion: Mapping[sp.Symbol, Node]) -> tuple[Node, ...]:
+        """The author's own formulas over these q'' and u'; none where no formula holds one."""
+        algebra = self.kinematics.algebra.extended(motion)
+        return tuple(algebra.of(o.formula) for o in self.model.outputs)
 
     @cached_property
     def motion(self) -> dict[sp.Symbol, Node]:
@@ -201,6 +225,12 @@ def solved(
         return tuple(solution), ()
     (solution,), pivots = ldl.solve(matrix, right)
     return tuple(solution), pivots
+
+
+def holds_motion(model: Model) -> bool:
+    """Whether an output mentions q'' or u'."""
+    held = {c.acceleration for c in model.coordinates} | {s.rate for s in model.speeds}
+    return any(o.formula.free_symbols & held for o in model.outputs)
 
 
 def machine_of(model: Model) -> Machine:

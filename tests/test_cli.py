@@ -17,7 +17,7 @@ from eomgen import __version__, study
 from eomgen.cli import commands
 
 COMMANDS = [
-    "check", "derive", "evaluate", "examples", "generate", "import", "new", "regressor", "schema",
+    "chart", "check", "derive", "evaluate", "examples", "generate", "import", "new", "regressor", "schema",
     "simulate", "statics", "templates",
 ]  # fmt: skip
 EQUATION = "m l² φ″ + d φ′ + m l g sin φ = τ"
@@ -51,7 +51,7 @@ def test_help_explains_every_option_and_gives_examples(call, command, flag):
 @pytest.mark.parametrize("command", [None, *COMMANDS])
 def test_the_examples_of_the_help_are_command_lines(command):
     epilog = (commands if command is None else commands.commands[command]).epilog
-    examples = re.findall(r"^  eomgen (\w+) ?([^<>\n]*)", epilog, re.MULTILINE)
+    examples = re.findall(r"^  eomgen (\w+) ?([^<>|\n]*)", epilog, re.MULTILINE)
     assert examples
     for name, words in examples:
         commands.commands[name].make_context(name, words.split())

@@ -135,7 +135,8 @@ def _constraint_powers(machine: Machine) -> list[Node]:
         return []
     rows = machine.schur.rows
     pairs = zip(machine.linked.multipliers, rows, strict=True)
-    return [multiplier * dot(row.jacobian, machine.rates) for multiplier, row in pairs]
+    relative = relative_speeds(machine)
+    return [multiplier * dot(row.jacobian, relative) for multiplier, row in pairs]
 
 
 def _moving_powers(machine: Machine) -> list[Node]:

@@ -11,7 +11,7 @@ from eomgen.mechanics.recursive.draft import Draft
 from eomgen.mechanics.recursive.formulas import Moving
 from eomgen.mechanics.recursive.places import Hung
 from eomgen.mechanics.recursive.records import GROUND, NoTree, Place, Point, SpatialFrame
-from eomgen.mechanics.recursive.steps import Flat, Rotation, Shift, Step, Turn
+from eomgen.mechanics.recursive.steps import Flat, FreeRotation, Rotation, Shift, Step, Turn
 from eomgen.mechanics.vectors import Matrix, Vector, add, scale, transform, transpose
 from eomgen.model import Quaternion
 from eomgen.model import Turn as Turned
@@ -188,7 +188,7 @@ def _turn_freely(path: _Path, quaternion: Quaternion) -> None:
     numbers = [path.draft.clock.numbers[s] for s in quaternion.speeds]
     own = {n: (*axis, zero, zero, zero) for n, axis in zip(numbers, units, strict=True)}
     path.spin = add(before, spin)
-    path.go(Rotation(matrix, spin, (zero,) * 3, before), own)
+    path.go(FreeRotation(matrix, spin, (zero,) * 3, before), own)
 
 
 def _aligned(axis: Sequence[Node], one: Node) -> int | None:

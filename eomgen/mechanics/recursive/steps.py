@@ -274,6 +274,17 @@ class Rotation:
         return sizes
 
 
+@dataclass(frozen=True)
+class FreeRotation(Rotation):
+    """By a quaternion: the matrix is orthogonal only at states whose quaternion has length one.
+
+    Derivatives with respect to its parts leave these states, so nothing may cancel R R' = 1.
+    """
+
+    def rigid(self, body: Rigid) -> Rigid | None:
+        """Never."""
+
+
 def forward(steps: Sequence[Step], twist: Vector[Node]) -> Vector[Node]:
     """X t through all steps."""
     for step in steps:
