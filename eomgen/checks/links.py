@@ -55,7 +55,7 @@ def samples_of(scene: Linked, states: Sequence[Admissible], drawn: Samples) -> S
     """Admissible states as samples, with the inputs and accelerations of random ones."""
     count, size = len(states), len(scene.model.coordinates)
     found = [s.state for s in states]
-    moving = [[float(v) for v in _speeds(scene, s.state)] for s in states]
+    moving = [[float(v) for v in speeds_of(scene, s.state)] for s in states]
     return Samples(
         count=count,
         time=[float(s.time) for s in found],
@@ -69,7 +69,7 @@ def samples_of(scene: Linked, states: Sequence[Admissible], drawn: Samples) -> S
     )
 
 
-def _speeds(scene: Linked, state: State) -> Sequence[Any]:
+def speeds_of(scene: Linked, state: State) -> Sequence[Any]:
     """The speeds of a state whose rates are known."""
     algebra = scene.links.kinematics.algebra
     nodes = [algebra.of(s.formula) for s in scene.model.speeds]
