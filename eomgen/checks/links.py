@@ -63,7 +63,7 @@ def _columns(
 ) -> Samples:
     count, size = len(states), len(scene.model.coordinates)
     found = [s.state for s in states]
-    moving = [[number(v) for v in _speeds(scene, s.state)] for s in states]
+    moving = [[number(v) for v in speeds_of(scene, s.state)] for s in states]
     return Samples(
         count=count,
         time=[number(s.time) for s in found],
@@ -77,7 +77,7 @@ def _columns(
     )
 
 
-def _speeds(scene: Linked, state: State) -> Sequence[Any]:
+def speeds_of(scene: Linked, state: State) -> Sequence[Any]:
     """The speeds of a state whose rates are known."""
     algebra = scene.links.kinematics.algebra
     nodes = [algebra.of(s.formula) for s in scene.model.speeds]
