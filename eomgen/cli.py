@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import gc
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn
 
 import click
 
 from eomgen import __version__, files
+from eomgen.cli_chart import chart
 from eomgen.cli_common import (
     code_options,
     code_style,
@@ -41,6 +43,7 @@ from eomgen.wanted import Wanted, wanted
 
 COLLECT_RARELY = 200_000  # a command lives for a second; looking for circles would take a tenth
 SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
+NOTES = frozenset(("latex", "text"))  # targets that show the closed form
 TARGET_NAMES = ("latex", "c", "python", "text")
 
 EXAMPLES = """\b
@@ -72,7 +75,7 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
     from eomgen.outputs import Wish, rendered
 
     wish = Wish(("text",), wishes["language"], wishes["templates"], wishes["steps"])
-    (text,) = rendered(studied(spec, format_, Wanted(formulation)), wish).values()
+    (text,) = rendered(studied(spec, format_, Wanted(formulation, notes=True)), wish).values()
     click.echo(text, nl=False)
 
 
@@ -118,6 +121,7 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
     targets += ("c-steps",) if integrators else ()
     with reporting(format_, files.shown(spec)):
         choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
+        choice = replace(choice, notes=not NOTES.isdisjoint(targets))
         style = code_style(targets, wishes)
     study = studied(spec, format_, choice)
     wish = Wish(
@@ -302,6 +306,7 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
 
 commands.add_command(import_robot)
 commands.add_command(simulate)
+commands.add_command(chart)
 
 
 def main() -> NoReturn:

@@ -18,7 +18,7 @@ FARTHEST = Decimal("0.01")  # rad
     "import",
     epilog=epilog(
         "eomgen import robot.urdf -o robot.yaml",
-        "eomgen import quadruped.urdf --floating-base | eomgen check -",
+        "eomgen import quadruped.urdf --floating-base -o quadruped.yaml",
     ),
 )
 @click.argument("robot", type=str)

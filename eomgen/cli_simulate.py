@@ -118,13 +118,21 @@ def _sink(output: str | None, wishes: dict[str, Any]) -> Iterator[IO[str] | None
         UsageError: a file is in the way, or cannot be written.
     """
     for path in (output, wishes["plot"], wishes["animate"]):
-        if path not in (None, files.STANDARD) and Path(path).exists() and not wishes["force"]:
-            raise UsageError(f"{path}: is in the way; choose another file, or --force")
+        if path not in (None, files.STANDARD):
+            _must_be_free(Path(path), wishes["force"])
     if output is None or output == files.STANDARD:
         yield None if output is None else sys.stdout
         return
     with _opened(output) as stream:
         yield stream
+
+
+def _must_be_free(path: Path, force: bool) -> None:
+    """Raise UsageError where a file would be lost; a device or pipe is none."""
+    if path.is_dir():
+        raise UsageError(f"{path}: is a folder; give a file")
+    if path.is_file() and not force:
+        raise UsageError(f"{path}: is in the way; choose another file, or --force")
 
 
 def _opened(path: str) -> IO[str]:

@@ -95,6 +95,9 @@ WORDS = {
         "checked": "checked",
         "routes": "Lagrange = Newton-Euler",
         "energies": "Lagrange in closed form = Lagrange on the graph",
+        "recursion": "Lagrange by differentiation = recursive Newton-Euler",
+        "projection": "d'Alembert = recursive Newton-Euler",
+        "identity": "inverse after forward dynamics = identity below {error}",
         "proven": "identical in exact arithmetic and",
         "states": "at {states} random states, worst relative error below {error}",
         "digits": " (in {digits} digits)",
@@ -107,6 +110,9 @@ WORDS = {
         "checked": "comprobado",
         "routes": "Lagrange = Newton-Euler",
         "energies": "Lagrange en forma cerrada = Lagrange en el grafo",
+        "recursion": "Lagrange por derivación = Newton-Euler recursivo",
+        "projection": "d'Alembert = Newton-Euler recursivo",
+        "identity": "dinámica inversa tras la directa = identidad hasta {error}",
         "proven": "idénticas en aritmética exacta y",
         "states": "en {states} estados aleatorios, peor error relativo menor que {error}",
         "digits": " (con {digits} dígitos)",
@@ -124,11 +130,12 @@ def check_line(report: Report, language: str) -> str:
     states = words["states"].format(states=found.states, error=bound(found.error))
     digits = words["digits"].format(digits=found.digits) if found.digits > 16 else ""
     proven = f"{words['proven']} " if found.proven else ""
-    routes = words["routes"] if report.projected else words["energies"]
     parts = [
-        f"{routes}, {proven}{states}{digits}",
+        f"{words[report.routes]}, {proven}{states}{digits}",
         words["power"].format(error=bound(report.power)),
     ]
+    if report.identity is not None:
+        parts.append(words["identity"].format(error=bound(report.identity)))
     if len(report.formulations) > 1:
         parts.append(words["formulations"].format(names=" = ".join(report.formulations)))
     if report.terms:
@@ -151,7 +158,8 @@ def summary(spec: str, study: Study, format_: str) -> str:
 def _text_summary(spec: str, study: Study) -> str:
     count = study.freedom
     freedom = f"{count} degree{'s' if count != 1 else ''} of freedom"
-    said = "; ".join([freedom, *_linked_words(study), check_line(study.report, "en")])
+    words = [freedom, *_linked_words(study), *_engine_words(study)]
+    said = "; ".join([*words, check_line(study.report, "en")])
     return "\n    ".join([f"{spec}: {said}", *_initial_words(study), *study.report.warnings])
 
 
@@ -162,6 +170,11 @@ def _initial_words(study: Study) -> tuple[str, ...]:
     from eomgen.analysis.admissible import describe
 
     return describe(study.machine, study.links.scene.report.initial)
+
+
+def _engine_words(study: Study) -> list[str]:
+    """How accelerations are computed."""
+    return [f"engine: {study.engine}"] if study.engine else []
 
 
 def _linked_words(study: Study) -> list[str]:
@@ -184,6 +197,7 @@ def _json_summary(spec: str, study: Study) -> str:
             "power_balance": report.power,
             "terms": report.terms,
             "claims": report.claims,
+            "engine": study.engine,
             **_warnings(study),
             **_linked_json(study),
         }

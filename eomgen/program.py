@@ -147,6 +147,7 @@ class Program:
     parameters: tuple[Variable, ...]
     outputs: tuple[Variable, ...]
     functions: tuple[Function, ...]
+    engine: str = ""  # how accelerations are found, and what that costs
     prepare: Function | None = None  # from the parameters alone: the `constants` of the functions
     folded: tuple[Variable, ...] = ()  # parameters that have become numbers in the functions
 

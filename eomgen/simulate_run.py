@@ -15,7 +15,7 @@ from eomgen.errors import UsageError
 from eomgen.numerics.records import Array, Rows
 from eomgen.render import animation, plot
 from eomgen.simulate import Verdict
-from eomgen.simulate_method import Choice, Wish, checked, choose, wanted
+from eomgen.simulate_method import AUTO, Choice, Wish, checked, choose, wanted
 from eomgen.simulate_report import ENERGY_TOLERANCE
 from eomgen.simulate_setup import Setup, setup, start_of
 from eomgen.study import Study
@@ -135,18 +135,26 @@ def job(study: Study, request: Request) -> Job:
         UsageError: the request contradicts itself or the scene.
         CheckError: the start cannot be moved to the constraints.
     """
-    wish = checked(Wish(request.method, request.step, request.rtol, request.atol), study)
+    wish = checked(_wish(study, request), study)
     start = start_of(study, request.state, _inputs(request.inputs))
     extra = (compile_places.function(study.compiled),) if request.animate else ()
-    made = setup(study, wanted(wish, study), start, extra)
+    made = setup(study, (wanted(wish, study),), start, extra)
     choice = choose(wish, made, request.t_end)
     if choice.is_fixed and choice.method not in {m.name for m in made.steps.methods}:
-        made = setup(study, choice.method, start, extra)
+        made = setup(study, (choice.method,), start, extra)
     _known(made, request.show)
     outputs = simulate.outputs_of(
         (start.time, start.time + request.t_end), choice, request.output_step
     )
     return Job(request, made, choice, outputs)
+
+
+def _wish(study: Study, request: Request) -> Wish:
+    """What was said on the command line; what it leaves open, the spec may say."""
+    said = study.model.simulation
+    if request.method != AUTO or request.step or request.rtol or request.atol or not said.method:
+        return Wish(request.method, request.step, request.rtol, request.atol)
+    return Wish(said.method, None if said.step is None else float(said.step))
 
 
 def _inputs(texts: tuple[str, ...]) -> dict[str, str]:

@@ -50,13 +50,15 @@ class Setup:
     is_compiled: bool
 
 
-def setup(study: Study, method: str, start: Start, extra: tuple[Function, ...] = ()) -> Setup:
-    """The engine of a study with the steps of a method (any but those of C: none).
+def setup(
+    study: Study, methods: tuple[str, ...], start: Start, extra: tuple[Function, ...] = ()
+) -> Setup:
+    """The engine of a study with the steps of these methods (those that are not of C have none).
 
     Raises:
         UsageError: the method is not for this scene, or the compiler fails.
     """
-    steps = stepping.of(study, (method,) if method in METHODS else ())
+    steps = stepping.of(study, tuple(m for m in methods if m in METHODS))
     machine = study.compiled
     flow = _flow(study)
     more = (compile_steps.state_jacobian(machine), *flow, *_contacts(study), *extra)

@@ -24,7 +24,8 @@ def test_an_imported_robot_is_checked_and_generated(call):
     made = call("import", "-", "-o", "arm.yaml", stdin=BASE)
     assert made.output.split() == ["arm.yaml", "eomgen.schema.json"]
     said = call("check", "arm.yaml")
-    assert "1 degree of freedom; checked: Lagrange = Newton-Euler" in said.output
+    assert "1 degree of freedom; engine: articulated bodies" in said.output
+    assert "; checked: Lagrange = Newton-Euler" in said.output
     assert call("generate", "arm.yaml", "-t", "c", "-o", "out").code == 0
 
 

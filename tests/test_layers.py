@@ -22,11 +22,14 @@ ALLOWED: dict[str, set[str]] = {
     "compile_linked": RECORDS | {"algebra", "mechanics", "compile"},
     "compile_reactions": RECORDS | {"algebra", "mechanics", "compile"},
     "compile_contacts": RECORDS | {"algebra", "mechanics", "compile"},
+    "compile_watch": RECORDS | {"algebra", "mechanics", "compile"},
     "analysis": RECORDS | {"algebra", "mechanics", "compile"},
     "checks": RECORDS | {"algebra", "mechanics", "compile", "analysis", "formulation"},
     "functions": RECORDS | {"algebra", "analysis", "checks", "compile", "mechanics", "render"},
     "wanted": {"errors"},
-    "formulation": RECORDS | {"wanted", "algebra", "analysis", "compile", "mechanics"},
+    "formulation": RECORDS
+    | {"compile_watch"}
+    | {"wanted", "algebra", "analysis", "compile", "mechanics"},
     "reactions": RECORDS | {"algebra", "formulation", "mechanics"},
     "study_linked": RECORDS
     | {
@@ -34,17 +37,20 @@ ALLOWED: dict[str, set[str]] = {
         "checks",
         "compile",
         "compile_contacts",
+        "compile_watch",
         "wanted",
         "compile_linked",
         "formulation",
         "mechanics",
     },
-    "study": RECORDS | {"wanted", "spec", "mechanics", "compile", "checks", "study_linked"},
+    "study": RECORDS
+    | {"algebra", "wanted", "spec", "mechanics", "compile", "checks", "study_linked"},
     "evaluate_joints": RECORDS
     | {"compile", "compile_reactions", "evaluate", "mechanics", "states"},
-    "evaluate_contacts": RECORDS | {"compile_contacts", "evaluate", "mechanics", "states"},
+    "evaluate_contacts": RECORDS
+    | {"compile", "compile_contacts", "evaluate", "mechanics", "states"},
     "evaluate_linked": RECORDS
-    | {"compile_contacts", "evaluate_contacts"}
+    | {"compile_contacts", "compile_watch", "evaluate_contacts"}
     | {"algebra", "evaluate", "interpreter", "reactions", "states", "study_linked"},
     "answers": RECORDS
     | {"evaluate_joints", "evaluate", "evaluate_linked", "functions", "states", "study"},
@@ -66,6 +72,11 @@ ALLOWED: dict[str, set[str]] = {
     | {"compile_places", "numerics", "render", "simulate", "simulate_method", "simulate_report"}
     | {"simulate_setup", "simulate_table", "study"},
     "cli_simulate": {"cli_common", "errors", "files", "simulate_run", "wanted"},
+    "chart": RECORDS
+    | {"compile_steps", "formulation", "integrators", "numerics", "render", "simulate"}
+    | {"simulate_method", "simulate_setup", "stepping", "study", "wanted"},
+    "charting": RECORDS | {"chart", "files", "spec", "study"},
+    "cli_chart": {"charting", "cli_common", "errors", "files"},
     "render": RECORDS | {"algebra", "mechanics", "integrators"},
     "numerics": RECORDS | {"render", "interpreter", "integrators"},
     "states": RECORDS | {"mechanics"},
@@ -84,6 +95,7 @@ ALLOWED: dict[str, set[str]] = {
     "cli": {
         "__init__",
         "cli_import",
+        "cli_chart",
         "cli_common",
         "cli_simulate",
         "cli_regressor",
