@@ -17,8 +17,8 @@ from eomgen import __version__, study
 from eomgen.cli import commands
 
 COMMANDS = [
-    "chart", "check", "derive", "evaluate", "examples", "generate", "import", "new", "regressor", "schema",
-    "simulate", "statics", "templates",
+    "chart", "check", "derive", "evaluate", "examples", "generate", "import", "new", "regressor",
+    "schema", "simulate", "statics", "templates",
 ]  # fmt: skip
 EQUATION = "m l² φ″ + d φ′ + m l g sin φ = τ"
 STATE = {"coordinates": {"phi": "0.1"}, "rates": {"phi": 2}, "inputs": {"tau": 0.5}}
