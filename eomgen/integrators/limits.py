@@ -102,9 +102,7 @@ def growth(method: Method, matrix: Array, places: int, step: float) -> float:
         found = np.linalg.eigvals(amplification(method, matrix, places, step))
         found = _without(found, np.exp(step * _growing(matrix)))
         return float(np.max(np.abs(found), initial=0.0))
-    values = [
-        amplification(method, np.array([[z]]), 0, step)[0, 0] for z in _decaying(matrix)
-    ]
+    values = [amplification(method, np.array([[z]]), 0, step)[0, 0] for z in _decaying(matrix)]
     return float(np.max(np.abs(values), initial=0.0))
 
 

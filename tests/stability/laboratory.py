@@ -9,6 +9,7 @@ from scenes import SHIPPED
 from tools import tool
 
 from eomgen import compile_flow, compile_steps, stepping, study
+from eomgen.formulation import choose
 from eomgen.integrators.methods import METHODS, Method
 from eomgen.integrators.steps import Steps
 from eomgen.integrators.tableaus import Tableau
@@ -44,12 +45,69 @@ dampers: [{along: x, damping: c}]
 initial: {x: 1, x': 0}
 """
 
+DOUBLE_PENDULUM = """\
+eom: 1
+system: Double pendulum
+space: plane
+gravity: [0, -g]
+parameters: {m: 1 kg, l: 1 m, g: 9.81 m/s^2}
+coordinates: {a: rad, b: rad}
+points: {A: "l*[sin(a), -cos(a)]", B: "A + l*[sin(b), -cos(b)]"}
+bodies:
+  upper: {mass: m, at: A}
+  lower: {mass: m, at: B}
+initial: {a: 0.3 rad, b: 0.3 rad, a': 0 rad/s, b': 0 rad/s}
+"""
+
+# four uniform bars; `lengths`: crank, coupler, rocker, ground
+FOUR_BAR = """\
+eom: 1
+system: Four-bar linkage
+space: plane
+gravity: [0, -g]
+parameters: {{a: {} m, b: {} m, c: {} m, e: {} m, m: 1 kg, g: 9.81 m/s^2}}
+coordinates:
+  q1: {{unit: rad, role: free}}
+  q2: {{unit: rad, role: linked}}
+  q3: {{unit: rad, role: linked}}
+points:
+  A: [0, 0]
+  D: [e, 0]
+  B: A + a*[cos(q1), sin(q1)]
+  C: B + b*[cos(q2), sin(q2)]
+  Cr: D + c*[cos(q3), sin(q3)]
+bodies:
+  crank: {{rod: [A, B], mass: m}}
+  coupler: {{rod: [B, C], mass: m}}
+  rocker: {{rod: [D, Cr], mass: m}}
+constraints:
+  loop: {{holonomic: C = Cr, reaction: pin}}
+initial: {}
+"""
+CRANK_ROCKER = FOUR_BAR.format(
+    "0.4", "1", "0.9", "1",
+    "{q1: 0.5 rad, q1': 0 rad/s, "
+    "guess: {q2: 40 deg, q3: 80 deg, q2': 0 rad/s, q3': 0 rad/s}}",
+)  # fmt: skip
+TURNING = "{q1: 90 deg, q1': -1 rad/s, guess: {q2: 0 deg, q3: 90 deg, q2': 0 rad/s, q3': -1 rad/s}}"
+PARALLELOGRAM = FOUR_BAR.format("1", "1", "1", "1", TURNING)
+
 
 @cache
-def derived(text, formulation="auto", baumgarte=F(0)):
+def studied(text):
     """The study of a spec text or of a shipped spec."""
     source = SHIPPED[text].read_text(encoding="utf-8") if text in SHIPPED else text
-    return study.of_text(source, "scene.yaml", Wanted(formulation, baumgarte))
+    return study.of_text(source, "scene.yaml")
+
+
+def derived(text, formulation="auto", baumgarte=F(0)):
+    """The study in a formulation, the analysis made once."""
+    found = studied(text)
+    if found.links is None:
+        return found
+    chosen = choose(found.links.scene, Wanted(formulation, baumgarte))
+    links = replace(found.links, chosen=chosen)
+    return replace(found, links=links, program=links.program())
 
 
 @cache

@@ -4,7 +4,8 @@ from functools import cache
 from math import exp, pi
 
 import numpy as np
-from laboratory import OSCILLATOR, amplitude, engine, run, start, stepped
+from laboratory import CRANK_ROCKER, OSCILLATOR, amplitude, engine, run, start, stepped
+from scipy.integrate import solve_ivp
 
 ZETAS = (0.0, 0.01, 0.1, 1.0)
 # h omega of the linear oscillator at these damping ratios
@@ -90,3 +91,35 @@ def semi_euler_implicit(scene, state, step, count):
         y[n:] += np.linalg.solve(gain, step * slope(k * step, y)[n:])
         y[:n] += step * y[n:]
     return y
+
+
+@cache
+def exact_parallelogram():
+    """Angle and rate of the parallelogram after 10 s: (2/3 + 1) l q'' = -2 g cos q, by DOP853."""
+    found = solve_ivp(
+        lambda t, y: [y[1], -1.2 * 9.81 * np.cos(y[0])],
+        (0, 10), [pi / 2, -1], "DOP853", rtol=1e-13, atol=1e-13,
+    )  # fmt: skip
+    return found.y[:, -1]
+
+
+@cache
+def crank(formulation, count):
+    """Crank angle and speed (101, 2) of the crank-rocker over 10 s by RK4."""
+    steps = stepped(CRANK_ROCKER, formulation)
+    rows = run(engine(steps), "rk4", start(steps), 10 / count, count, count // 100)
+    speed = len(steps.program.coordinates)
+    return rows.states[:, [0, speed]]
+
+
+@cache
+def best_in_float(formulation, *, compensated):
+    """Step -> error of the crank angle after 10 s by RK4 in float."""
+    steps = stepped(CRANK_ROCKER, formulation, compensated=compensated)
+    exact = crank("minimal", 10_000)[-1, 0]
+    scene = engine(steps, "float")
+    counts = {1e-2: 1000, 5e-3: 2000, 1e-3: 10_000, 1e-4: 100_000, 1e-5: 1_000_000}
+    return {
+        step: abs(run(scene, "rk4", start(steps), step, count).states[-1, 0] - exact)
+        for step, count in counts.items()
+    }
