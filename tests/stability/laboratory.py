@@ -141,12 +141,12 @@ def start(steps, **values):
     names = [v.name for v in (*steps.program.coordinates, *steps.program.speeds)]
     assert values.keys() <= set(names)
     return np.array([
-        float(values[v.name] if v.name in values else v.value)
+        float(values.get(v.name, v.value))
         for v in (*steps.program.coordinates, *steps.program.speeds)
     ])  # fmt: skip
 
 
-def run(scene, method, state, step, count, every=None):  # noqa: PLR0913
+def run(scene, method, state, step, count, every=None):  # noqa: PLR0913, PLR0917
     """Rows after `every` steps, the first the start; default: the end alone."""
     grid = Grid(0.0, step, count, every or count)
     return integrate.run(scene, EVERY[method], np.array(state, float), grid)

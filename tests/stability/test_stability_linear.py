@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from laboratory import EVERY, OSCILLATOR, amplitude, engine, failed, run, start, stepped
 from measures import ENERGY, LIMITS, ZETAS, energy_change, measured_limit, semi_euler_implicit
-
-from eomgen.integrators.limits import growth, largest_step
+from theory import growth, largest_step
 
 
 def oscillator(**parameters):

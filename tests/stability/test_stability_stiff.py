@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from laboratory import METHODS, SHIPPED, engine, failed, run, start, stepped
 from scipy.integrate import solve_ivp
-
-from eomgen.integrators.limits import largest_step
+from theory import largest_step
 
 
 def governor():

@@ -69,7 +69,11 @@ gravity: 0
 parameters: {m: 1 kg, J: 1 kg*m^2}
 coordinates: {yaw: rad, pitch: rad, roll: rad}
 bodies:
-  ball: {mass: m, frame: {turn: [[z, yaw], [y, pitch], [x, roll]]}, com: [0, 0, 0], inertia: [J, J, J]}
+  ball:
+    mass: m
+    frame: {turn: [[z, yaw], [y, pitch], [x, roll]]}
+    com: [0, 0, 0]
+    inertia: [J, J, J]
 initial: {yaw: 0 rad, pitch: 0 rad, roll: 0 rad, yaw': 0 rad/s, pitch': 1 rad/s, roll': 0 rad/s}
 """
 
@@ -140,9 +144,9 @@ def told_time(count, step=1e-3):
     return rows.states[-1][1]
 
 
-def summed(count, step=np.float32(1e-3)):
+def summed(count):
     """t += h in float, in pieces."""
-    t, piece = np.float32(0), 1_000_000
+    t, step, piece = np.float32(0), np.float32(1e-3), 1_000_000
     for _ in range(count // piece):
         steps = np.full(piece + 1, step, np.float32)
         steps[0] = t
