@@ -123,6 +123,26 @@ def floats() -> list[str]:
     return lines
 
 
+FINDINGS = """\
+## What these numbers say
+
+* A step is told to be too large by its limit alone: RK4 bears h omega = 2.83, fixed-step dopri5
+  only 1.0 where nothing damps. Verlet's position form has the limit of semi-implicit Euler under
+  damping (0.83 at zeta = 1), the velocity form 2.0; the generated one is therefore refused where
+  forces depend on rates.
+* With M(q), semi-implicit Euler and Verlet drift with order 1. RK4 and the midpoint rule of (q,
+  p) do not.
+* Projection keeps the constraints, not the energy: under semi-implicit Euler at h = 0.001 the
+  projected multiplier form of the four-bar linkage gains energy and runs away after 150 s; the
+  null space loses energy instead.
+* The parallelogram passes its singular position at every step size. With one bar off by 1e-6 it
+  has no smooth passage: every fixed step is lost or ends with a wrong energy, and every such run
+  says that steps were not projected.
+* In float, smaller steps make the error larger again. The compensated sum removes that where
+  nothing is projected (8e-8 instead of 3e-5 at h = 1e-5), and does not where a projection rounds
+  its own result.
+"""
+
 PARTS = {
     "Largest h omega of a damped oscillator, by the C / by theory": limits,
     "Energy of an oscillator, change in a period of 100 steps": energy,
@@ -139,7 +159,7 @@ def main() -> None:
     parser.add_argument("-o", "--output", type=Path)
     output = parser.parse_args().output
     parts = [line for title, part in PARTS.items() for line in (f"## {title}", "", *part(), "")]
-    text = "\n".join(["# Stability, measured", "", *parts])
+    text = "\n".join(["# Stability, measured", "", *parts, FINDINGS])
     print(text)
     if output:
         output.write_text(text, encoding="utf-8")
