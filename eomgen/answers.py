@@ -21,6 +21,7 @@ class Question:
     digits: int = 17
     project: bool = False
     joints: bool = False  # the forces between components too, by the interpreter
+    functions: Sequence[str] = ()  # these alone
 
 
 def answers(study: Study, text: str, question: Question) -> list[Result]:
@@ -30,15 +31,28 @@ def answers(study: Study, text: str, question: Question) -> list[Result]:
         UsageError: the text is wrong, or `project` is asked for where nothing is linked.
         CheckError: something is singular, undefined or off the constraints at a state.
     """
+    if question.joints and question.functions:
+        raise UsageError("--joints adds to the usual results; --functions replaces them")
     if study.links is not None:
         return _linked(study, text, question)
     if question.project:
         raise UsageError("--project: the spec has no constraints to project a state on")
-    needs_time = evaluate.depends_on_time(study.program)
-    found = states.read(text, study.model, needs_time=needs_time)
+    source = _source(study, study.program, question)
+    found = states.read(text, study.model, needs_time=evaluate.depends_on_time(source))
     using, digits = question.using, question.digits
-    results = evaluate.evaluate(study.machine, study.program, found, using, digits)
+    if question.functions:
+        return evaluate.functions(study.model, source, found, using, digits)
+    results = evaluate.evaluate(study.machine, source, found, using, digits)
     return _with_joints(study, study.program, found, results) if question.joints else results
+
+
+def _source(study: Study, program: Program, question: Question) -> Program:
+    """The program that answers: the functions that were asked for, or the whole of it."""
+    if not question.functions:
+        return program
+    from eomgen.functions import table
+
+    return table.select(program, study.machine, question.functions)
 
 
 def _with_joints(
@@ -65,5 +79,9 @@ def _linked(study: Study, text: str, question: Question) -> list[Result]:
     model = evaluate_linked.consistent(study.links)
     found = states.read(text, model, needs_time=evaluate.depends_on_time(source))
     how = (question.using, question.digits)
+    if question.functions:
+        wanted = _source(study, source, question)
+        there = evaluate_linked.placed(study.links, source, found, project=question.project)
+        return evaluate.functions(study.machine.model, wanted, there, *how)
     results = evaluate_linked.evaluate(study.links, source, found, how, project=question.project)
     return _with_joints(study, source, found, results) if question.joints else results

@@ -7,13 +7,17 @@ from __future__ import annotations
 
 import gc
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn
 
 import click
 
 from eomgen import __version__, files
+from eomgen.cli_chart import chart
 from eomgen.cli_common import (
+    code_options,
+    code_style,
     compensated_option,
     complain,
     decoded,
@@ -21,20 +25,26 @@ from eomgen.cli_common import (
     epilog,
     format_option,
     formulation_option,
+    functions_option,
     integrator_option,
     language_option,
+    list_functions_option,
+    method_option,
     print_files,
     reporting,
     spec_argument,
     studied,
     templates_option,
 )
+from eomgen.cli_import import import_robot
+from eomgen.cli_regressor import regressor
 from eomgen.cli_simulate import simulate
 from eomgen.errors import EomgenError, UsageError
 from eomgen.wanted import Wanted, wanted
 
 COLLECT_RARELY = 200_000  # a command lives for a second; looking for circles would take a tenth
 SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
+NOTES = frozenset(("latex", "text"))  # targets that show the closed form
 TARGET_NAMES = ("latex", "c", "python", "text")
 
 EXAMPLES = """\b
@@ -60,13 +70,15 @@ def commands() -> None:
 @language_option
 @templates_option
 @formulation_option
+@method_option
 @format_option
 def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
     """Show the equations of motion of SPEC in the terminal."""
     from eomgen.outputs import Wish, rendered
 
     wish = Wish(("text",), wishes["language"], wishes["templates"], wishes["steps"])
-    (text,) = rendered(studied(spec, format_, Wanted(formulation)), wish).values()
+    choice = Wanted(formulation, notes=True, method=wishes["method"])
+    (text,) = rendered(studied(spec, format_, choice), wish).values()
     click.echo(text, nl=False)
 
 
@@ -93,33 +105,43 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 @language_option
 @templates_option
 @formulation_option
+@method_option
 @click.option("--baumgarte", metavar="ALPHA", help="Stabilise multipliers [1/s], only if asked.")
 @click.option("--step", metavar="H", help="The step [s] that caps ALPHA at 0.2/H.")
+@code_options
 @integrator_option
 @compensated_option
+@functions_option
+@list_functions_option
 @format_option
 def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -> None:
     """Write lecture notes, C and Python for SPEC."""
     from eomgen.outputs import Wish, rendered
 
     targets = wishes["targets"] or ("latex", "c", "python")
-    integrators = wishes["integrators"]
+    functions, integrators = tuple(wishes["functions"]), wishes["integrators"]
     if wishes["compensated"] and not integrators:
         raise UsageError("--compensated is how integrators add: say --integrator too")
     targets += ("c-steps",) if integrators else ()
+    with reporting(format_, files.shown(spec)):
+        choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
+        notes = not NOTES.isdisjoint(targets)
+        if wishes["method"] and not notes:
+            raise UsageError("--method is how the notes derive: add -t latex or -t text")
+        choice = replace(choice, notes=notes, method=wishes["method"])
+        style = code_style(targets, wishes)
+    study = studied(spec, format_, choice)
     wish = Wish(
         targets,
         wishes["language"],
         wishes["templates"],
         wishes["steps"],
+        functions,
         integrators,
         wishes["compensated"],
+        style,
     )
-    with reporting(format_, files.shown(spec)):
-        choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
-    study = studied(spec, format_, choice)
-    with reporting(format_, files.shown(spec)):
-        made = rendered(study, wish)
+    made = rendered(study, wish)
     if output == files.STANDARD:
         print_files(made)
         return
@@ -159,11 +181,14 @@ def check(specs: tuple[str, ...], format_: str) -> None:
 )
 @click.option("--project", is_flag=True, help="Move states to the nearest admissible ones.")
 @click.option("--joints", is_flag=True, help="Add the forces between components (Newton-Euler).")
+@functions_option
+@list_functions_option
 @format_option
 def evaluate(spec: str, state: str | None, format_: str, **wishes: Any) -> None:
     """Compute accelerations, energies, forces and outputs of SPEC at given states, as JSON.
 
-    Without --state the spec's initial values are the state.
+    Without --state the spec's initial values are the state. With --functions the results of these
+    functions are shown instead, row by row.
     """
     import json
 
@@ -221,6 +246,9 @@ def statics(spec: str, format_: str, output: str, force: bool, **wishes: Any) ->
         return
     for path in files.write_all(Path(output), made, force=force):
         click.echo(str(path))
+
+
+commands.add_command(regressor)
 
 
 @commands.command(epilog=epilog("eomgen new my_system", "eomgen new crane --like furuta_pendulum"))
@@ -283,7 +311,9 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
         click.echo(str(path))
 
 
+commands.add_command(import_robot)
 commands.add_command(simulate)
+commands.add_command(chart)
 
 
 def main() -> NoReturn:

@@ -8,7 +8,7 @@ from functools import reduce
 
 import sympy as sp
 
-from eomgen.algebra import derive, ldl
+from eomgen.algebra import ldl
 from eomgen.algebra.arithmetic import evaluate, over
 from eomgen.algebra.assemble import assemble
 from eomgen.algebra.elementary import maximum, minimum
@@ -16,9 +16,10 @@ from eomgen.algebra.graph import LEAVES, Node, below
 from eomgen.checks import separable
 from eomgen.compile import Machine, solved
 from eomgen.errors import UsageError
+from eomgen.functions import table
+from eomgen.functions.motion import Motion
 from eomgen.integrators.methods import Method
 from eomgen.mechanics import speeds
-from eomgen.mechanics.vectors import dot
 from eomgen.model import TIME
 from eomgen.program import Function
 
@@ -76,34 +77,7 @@ def offers(scene: Scene, method: Method) -> bool:
 
 def state_jacobian(m: Machine) -> Function:
     """d (q', u') / d (q, u)."""
-    symbols = [*(c.symbol for c in m.model.coordinates), *speeds.symbols(m.model)]
-    one = m.kinematics.algebra.number(1)
-    directions = [derive.direction(one.graph, {m.kinematics.algebra.of(s): one}) for s in symbols]
-    lower, pivots = _speed_columns(m, directions)
-    columns = [[*map(along, m.rates), *low] for along, low in zip(directions, lower, strict=True)]
-    entries = [entry for row in zip(*columns, strict=True) for entry in row]
-    about = "d (q', u') / d (q, u), the Jacobian of the derivative of the state"
-    return assemble("state_jacobian", about, (len(symbols),) * 2, entries, pivots)
-
-
-def _speed_columns(
-    m: Machine, directions: Sequence[Callable[[Node], Node]]
-) -> tuple[list[list[Node]], ldl.Pivots]:
-    """The derivative of u' along each direction:  M du' = d(Q - h) - dM u'."""
-    solution, pivots = m.solution
-    if m.kept:
-        return [[along(a) for a in solution] for along in directions], pivots
-    matrix = m.equations.mass_matrix
-    loads = [q - h for q, h in zip(m.equations.generalized_forces, m.equations.bias, strict=True)]
-    rights = [
-        [
-            along(b) - dot(list(map(along, row)), solution)
-            for b, row in zip(loads, matrix, strict=True)
-        ]
-        for along in directions
-    ]
-    columns, more = ldl.solve(matrix, *rights)
-    return columns, pivots + more
+    return table.ROWS["state_jacobian"].build(Motion(m))
 
 
 def _jacobian(scene: Scene) -> Function:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from math import prod
+from typing import Any, TypeVar
 
 import sympy as sp
 
@@ -78,6 +79,7 @@ def arguments(
     return {
         "time": [convert(state.time)],
         "state": [convert(v) for v in (*state.coordinates, *speeds_of(state, model))],
+        "accelerations": [convert(v) for v in state.accelerations or ()],
         "inputs": [convert(v) for v in state.inputs],
         "parameters": [convert(v) for v in state.parameters],
     }
@@ -110,14 +112,16 @@ def _interpreter(source: Program, model: Model) -> Call:
 
 def _compiled(source: Program, model: Model) -> Call:
     from eomgen.numerics import compiled
+    from eomgen.render.code_context import coded
     from eomgen.render.targets import TARGETS, render
     from eomgen.render.templating import environment
 
-    library = compiled.build(render(source, TARGETS["c"], environment()), source)
+    library = compiled.build(render(coded(source), TARGETS["c"], environment()), source)
 
     def call(name: str, state: State) -> list[Any]:
         a = arguments(state, model, float)
-        result = library.call(name, a["time"][0], a["state"], a["inputs"], a["parameters"])
+        taken = source.function(name).arguments[1:]
+        result = library.call(name, a["time"][0], *(a[argument] for argument in taken))
         return list(result.ravel())
 
     return call
@@ -125,10 +129,11 @@ def _compiled(source: Program, model: Model) -> Call:
 
 def _python(source: Program, model: Model) -> Call:
     from eomgen.numerics import compiled
+    from eomgen.render.code_context import coded
     from eomgen.render.targets import TARGETS, render
     from eomgen.render.templating import environment
 
-    (text,) = render(source, TARGETS["python"], environment()).values()
+    (text,) = render(coded(source), TARGETS["python"], environment()).values()
     module = compiled.load_python(text, source.name)
 
     def call(name: str, state: State) -> list[Any]:
@@ -137,11 +142,10 @@ def _python(source: Program, model: Model) -> Call:
         a = arguments(state, model, float)
         names = [p.name for p in source.parameters]
         parameters = dict(zip(names, a["parameters"], strict=True))
-        inputs = {"inputs": a["inputs"]} if source.inputs else {}
+        taken = source.function(name).arguments
+        given = [a[argument] for argument in taken if argument not in ("time", "parameters")]
         try:
-            result = getattr(module, name)(
-                a["time"][0], a["state"], **inputs, parameters=parameters
-            )
+            result = getattr(module, name)(a["time"][0], *given, parameters)
         except numpy.linalg.LinAlgError as error:
             raise CheckError(f"{name}: {error}") from error
         return list(numpy.ravel(result))
@@ -189,13 +193,57 @@ def evaluate(
     """
     model = machine.model
     chosen = engine(using, source, model, digits)
-    results = []
+    return at_each(states, lambda state: named_results(chosen, source, model, state))
+
+
+def functions(
+    model: Model, source: Program, states: Sequence[State], using: str, digits: int
+) -> list[Result]:
+    """The results of every function of the program at every state: nested lists of its shape.
+
+    Raises:
+        CheckError: the mass matrix is singular or a formula undefined at a state.
+        UsageError: accelerations are missing, or the engine cannot do what is asked.
+    """
+    chosen = engine(using, source, model, digits)
+
+    def results(state: State) -> Result:
+        _need_accelerations(source, state)
+        called = ((f, chosen.call(f.name, state)) for f in source.functions)
+        return {f.name: _nested([chosen.shown(v) for v in found], f.shape) for f, found in called}
+
+    return at_each(states, results)
+
+
+def _need_accelerations(source: Program, state: State) -> None:
+    """Refuse a state without accelerations that a function takes, or with some that none takes."""
+    moving = [f.name for f in source.functions if "accelerations" in f.arguments]
+    if moving and state.accelerations is None:
+        raise UsageError(f'{moving[0]} needs "accelerations" in the state, one for each speed')
+    if not moving and state.accelerations is not None:
+        raise UsageError('"accelerations" of a state: no function here takes them; leave them out')
+
+
+Found = TypeVar("Found")
+
+
+def at_each(states: Sequence[State], results: Callable[[State], Found]) -> list[Found]:
+    """The results at every state; an error says at which."""
+    found = []
     for number, state in enumerate(states, 1):
         try:
-            results.append(named_results(chosen, source, model, state))
+            found.append(results(state))
         except CheckError as error:
             raise CheckError(f"state {number}: {error}") from error
-    return results
+    return found
+
+
+def _nested(values: Sequence[Any], shape: Sequence[int]) -> list[Any]:
+    """Row-major values as lists in lists."""
+    if len(shape) == 1:
+        return list(values)
+    step = prod(shape[1:])
+    return [_nested(values[i * step : (i + 1) * step], shape[1:]) for i in range(shape[0])]
 
 
 def named_results(chosen: Engine, source: Program, model: Model, state: State) -> Result:
@@ -205,14 +253,17 @@ def named_results(chosen: Engine, source: Program, model: Model, state: State) -
         values = chosen.call(function, state)
         return {n: chosen.shown(v) for n, v in zip(names, values, strict=True)}
 
+    _need_accelerations(source, state)
     coordinates = [c.name for c in model.coordinates]
     accelerations = "coordinate_accelerations" if model.speeds else "accelerations"
-    result = {
-        "accelerations": named(accelerations, coordinates),
-        "energy": named("energy", ("kinetic", "potential")),
-        "generalized_forces": named("generalized_forces", speeds.names(model)),
-        "outputs": named("outputs", [o.name for o in source.outputs]),
+    wanted = {
+        "accelerations": (accelerations, coordinates),
+        "energy": ("energy", ("kinetic", "potential")),
+        "generalized_forces": ("generalized_forces", speeds.names(model)),
+        "outputs": ("outputs", [o.name for o in source.outputs]),
     }
     if model.speeds:
-        result["speed_derivatives"] = named("accelerations", speeds.names(model))
-    return result
+        wanted["speed_derivatives"] = ("accelerations", speeds.names(model))
+    # where friction decides the motion each mode has accelerations of its own
+    there = {f.name for f in source.functions}
+    return {name: named(*how) for name, how in wanted.items() if how[0] in there}

@@ -21,6 +21,7 @@ from eomgen.program import (
     Expression,
     Function,
     Number,
+    Program,
     Read,
     RequirePositive,
     Solve,
@@ -30,7 +31,7 @@ from eomgen.program import (
 
 __all__ = [
     "EXACT", "FLOAT", "NUMPY", "Arithmetic", "NotDefined", "SingularMassMatrix",
-    "mpmath_arithmetic", "run",
+    "call", "mpmath_arithmetic", "run",
 ]  # fmt: skip
 
 
@@ -71,7 +72,7 @@ class _Memory:
                 self.arithmetic.require_positive(pivot.name, value, size)
             case Solve(names, matrix, right):
                 entries = [self.value(a) for a in (*matrix, *right)]
-                solution = solve_loop(entries, len(names), self.arithmetic)
+                solution = solve_loop(entries, statement.size, self.arithmetic)
                 self.values.update(zip(names, solution, strict=True))
 
 
@@ -80,8 +81,8 @@ def run(
 ) -> list[Any]:
     """The results of a function, row-major.
 
-    arguments: `time` (one entry), `state`, `inputs`, `parameters`; what the function does not read
-    may be absent; with NUMPY an entry may be an array over states.
+    arguments: those of `program.ARGUMENTS` by name, `time` with one entry; what the function does
+    not read may be absent; with NUMPY an entry may be an array over states.
     Raises SingularMassMatrix, and NotDefined where a formula has no real value.
     """
     memory = _Memory(arguments, arithmetic)
@@ -91,3 +92,13 @@ def run(
         return [memory.value(result) for result in function.results]
     except (ZeroDivisionError, ValueError, OverflowError) as error:
         raise NotDefined(f"{function.name} is not defined at this state: {error}") from error
+
+
+def call(
+    program: Program, name: str, arguments: Mapping[str, Sequence[Any]], arithmetic: Arithmetic
+) -> list[Any]:
+    """The results of a function of a program, prepared or not; arguments and errors as of `run`."""
+    given = dict(arguments)
+    if program.prepare is not None:
+        given["constants"] = run(program.prepare, given, arithmetic)
+    return run(program.function(name), given, arithmetic)

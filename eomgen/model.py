@@ -103,6 +103,29 @@ class Turn:
     axis: tuple[sp.Expr, sp.Expr, sp.Expr]
     angle: sp.Expr
 
+    @property
+    def formulas(self) -> tuple[sp.Expr, ...]:
+        """What turns."""
+        return (self.angle,)
+
+
+@dataclass(frozen=True)
+class Quaternion:
+    """A turn by a unit quaternion; `speeds`: its angular velocity in the axes after the turn.
+
+    symbols: four coordinates, the scalar part first, whose squares add up to one.
+    """
+
+    name: str
+    symbols: tuple[sp.Symbol, sp.Symbol, sp.Symbol, sp.Symbol]
+    rates: tuple[sp.Symbol, sp.Symbol, sp.Symbol, sp.Symbol]
+    speeds: tuple[sp.Symbol, sp.Symbol, sp.Symbol]
+
+    @property
+    def formulas(self) -> tuple[sp.Expr, ...]:
+        """What turns."""
+        return self.symbols
+
 
 @dataclass(frozen=True)
 class Frame:
@@ -112,7 +135,7 @@ class Frame:
     """
 
     origin: Place
-    turns: tuple[Turn, ...] = ()
+    turns: tuple[Turn | Quaternion, ...] = ()
     along: tuple[str, str] | None = None
 
 
@@ -181,6 +204,18 @@ class Force:
 
 
 @dataclass(frozen=True)
+class Drive:
+    """A force along a scalar formula, which it increases; a moment where the formula is an angle.
+
+    It works on the rate of `along` and on nothing else: a motor in a joint, with its reaction.
+    """
+
+    name: str
+    along: sp.Expr
+    force: sp.Expr
+
+
+@dataclass(frozen=True)
 class Moment:
     """Acts on a body: one scalar in a plane, three components in solid space."""
 
@@ -208,6 +243,11 @@ class Constraint:
     restitution: sp.Expr | None = None  # of a unilateral one, between 0 and 1
     friction: sp.Expr | None = None  # Coulomb's coefficient, not negative
     description: Description = Description()
+
+    @property
+    def rubs(self) -> bool:
+        """Whether there is friction; a coefficient that is written 0 is none."""
+        return self.friction is not None and self.friction != 0
 
 
 @dataclass(frozen=True)
@@ -253,6 +293,15 @@ class Output:
 
 
 @dataclass(frozen=True)
+class Simulation:
+    """How the author wants the scene to be run; None where nothing is said."""
+
+    method: str | None = None
+    step: sp.Expr | None = None  # s
+    formulation: str | None = None
+
+
+@dataclass(frozen=True)
 class Model:
     """One mechanical system."""
 
@@ -262,7 +311,8 @@ class Model:
     gravity: tuple[sp.Expr, ...]
     parameters: tuple[Parameter, ...] = ()
     coordinates: tuple[Coordinate, ...] = ()
-    speeds: tuple[Speed, ...] = ()
+    speeds: tuple[Speed, ...] = ()  # with quaternions: the rates of the other coordinates too
+    quaternions: tuple[Quaternion, ...] = ()
     prescribed: tuple[Prescribed, ...] = ()
     inputs: tuple[Input, ...] = ()
     points: tuple[Point, ...] = ()
@@ -270,6 +320,7 @@ class Model:
     springs: tuple[Spring, ...] = ()
     dampers: tuple[Damper, ...] = ()
     forces: tuple[Force, ...] = ()
+    drives: tuple[Drive, ...] = ()
     moments: tuple[Moment, ...] = ()
     constraints: tuple[Constraint, ...] = ()
     energy: Energy = Energy()
@@ -278,5 +329,11 @@ class Model:
     range: Mapping[str, tuple[sp.Expr, sp.Expr]] = field(default_factory=dict)
     outputs: tuple[Output, ...] = ()
     expect: Expectation = Expectation()
+    simulation: Simulation = Simulation()
     with_units: bool = False  # the spec states units, so every formula is dimension-checked
     digest: str = ""  # sha256 of the spec's text
+
+    @property
+    def guides(self) -> tuple[Constraint, ...]:
+        """Two-sided constraints with friction: the motion is that of a mode, stick or slip."""
+        return tuple(c for c in self.constraints if c.rubs and c.kind != "unilateral")

@@ -2,13 +2,15 @@
 
 Every target renders it, the interpreter defines what it means, and nothing behind it knows
 mechanics. Every function of a program has the arguments t, state = (coordinates, speeds), inputs
-and parameters.
+and parameters; some have the accelerations u', derivatives of the speeds, behind the state. Those
+of a prepared program also read the constants which `prepare` makes of the parameters.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from math import isqrt
 
 import sympy as sp
 
@@ -20,6 +22,11 @@ OPERATORS = {  # name -> number of operands
 }  # fmt: skip
 
 
+ARGUMENTS = ("time", "state", "accelerations", "inputs", "parameters")  # in the order of a call
+AT_A_STATE = ("time", "state", "inputs", "parameters")
+IN_MOTION = ARGUMENTS  # with accelerations that the caller chooses
+
+
 @dataclass(frozen=True)
 class Number:
     """An exact rational constant."""
@@ -29,7 +36,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Read:
-    """One component of an argument: `time` (index 0), `state`, `inputs` or `parameters`."""
+    """One component of an argument of `ARGUMENTS`, or of the `constants`; of `time` that is 0."""
 
     argument: str
     index: int
@@ -71,28 +78,49 @@ class RequirePositive:
 
 @dataclass(frozen=True)
 class Solve:
-    """names = A^-1 b by L D L' in a loop, for systems too large to unroll; same pivot rule.
+    """names = A^-1 B by L D L' in a loop, for systems too large to unroll; same pivot rule.
 
-    matrix: the lower triangle of A row by row, n (n + 1) / 2 entries; right: b, n entries.
+    matrix: the lower triangle of A row by row, n (n + 1) / 2 entries; right: B, column by column,
+    n entries for each, as the names.
     """
 
     names: tuple[str, ...]
     matrix: tuple[Expression, ...]
     right: tuple[Expression, ...]
 
+    @property
+    def size(self) -> int:
+        """The number n of equations."""
+        return (isqrt(8 * len(self.matrix) + 1) - 1) // 2
+
 
 Statement = Assign | RequirePositive | Solve
 
 
+def operands(statement: Statement) -> tuple[Expression, ...]:
+    """The expressions that a statement reads."""
+    match statement:
+        case Assign(_, expression):
+            return (expression,)
+        case RequirePositive(value, scale):
+            return (value, scale)
+        case Solve(_, matrix, right):
+            return matrix + right
+
+
 @dataclass(frozen=True)
 class Function:
-    """One function: statements, then its results in row-major order of `shape`."""
+    """One function: statements, then its results in row-major order of `shape`.
+
+    arguments: what a caller passes, `AT_A_STATE` or `IN_MOTION`.
+    """
 
     name: str
     about: str
     shape: tuple[int, ...]
     statements: tuple[Statement, ...]
     results: tuple[Expression, ...]
+    arguments: tuple[str, ...] = AT_A_STATE
 
 
 @dataclass(frozen=True)
@@ -119,6 +147,9 @@ class Program:
     parameters: tuple[Variable, ...]
     outputs: tuple[Variable, ...]
     functions: tuple[Function, ...]
+    engine: str = ""  # how accelerations are found, and what that costs
+    prepare: Function | None = None  # from the parameters alone: the `constants` of the functions
+    folded: tuple[Variable, ...] = ()  # parameters that have become numbers in the functions
 
     def function(self, name: str) -> Function:
         """The function of that name."""

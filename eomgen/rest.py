@@ -59,6 +59,8 @@ def solved(text: str | bytes, file: str, load: Load) -> Solved:
         CheckError: an equilibrium fails its independent check.
     """
     model = read(text, file)
+    if model.quaternions:
+        raise UsageError("statics needs turns by angles: a quaternion has no small set of them")
     inputs = _values(load.inputs, [i.name for i in model.inputs], "input")
     parameters = _values(load.parameters, _free(model), "parameter")
     statics = equilibrium.equations(model)

@@ -52,10 +52,10 @@ def start(name: str, like: str) -> list[Path]:
     path = Path(f"{name}.yaml")
     _must_be_new([path])
     text = _chosen([like], _specs(), "example")[like].read_text(encoding="utf-8")
-    return files.put({path: text} | _schema_in(Path()))
+    return files.put({path: text} | schema_in(Path()))
 
 
-def _schema_in(folder: Path) -> dict[Path, str]:
+def schema_in(folder: Path) -> dict[Path, str]:
     """The schema that the first line of every example names, unless it is there."""
     path = folder / SCHEMA_FILE
     return {} if path.exists() else {path: schema_text()}
@@ -70,7 +70,7 @@ def copy_examples(names: Iterable[str], folder: Path) -> list[Path]:
     chosen = _chosen(names, _specs(), "example")
     made = {folder / p.name: p.read_text(encoding="utf-8") for p in chosen.values()}
     _must_be_new(made)
-    return files.put(made | _schema_in(folder))
+    return files.put(made | schema_in(folder))
 
 
 def templates() -> list[str]:

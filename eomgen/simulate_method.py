@@ -125,10 +125,15 @@ def eigenvalues(setup: Setup) -> Array:
 
 
 def stiff(values: Array, span: float) -> Array:
-    """Those that decay much faster than the run is long."""
+    """Those that decay much faster than the run is long, and that no growth as fast mirrors.
+
+    Away from rest a scene without dampers has pairs +-lambda: nothing decays there for good.
+    """
     sizes = np.abs(values)
-    chosen: Array = values[(np.abs(values.real) >= DAMPED * sizes) & (sizes * span > STIFF)]
-    return chosen[chosen.real < 0]
+    fast = (values.real <= -DAMPED * sizes) & (sizes * span > STIFF)
+    growth = max(0.0, float(np.max(values.real, initial=0.0)))
+    chosen: Array = values[fast & (-values.real > 2 * growth)]
+    return chosen
 
 
 def _automatic(setup: Setup, values: Array, span: float) -> tuple[str, str]:

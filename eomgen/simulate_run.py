@@ -15,10 +15,9 @@ from eomgen.errors import UsageError
 from eomgen.numerics.records import Array, Rows
 from eomgen.render import animation, plot
 from eomgen.simulate import Verdict
-from eomgen.simulate_method import Choice, Wish, checked, choose, wanted
+from eomgen.simulate_method import AUTO, Choice, Wish, checked, choose, wanted
 from eomgen.simulate_report import ENERGY_TOLERANCE
 from eomgen.simulate_setup import Setup, setup, start_of
-from eomgen.stepping import machine_of
 from eomgen.study import Study
 
 FRAMES = 300  # of an animation
@@ -125,7 +124,7 @@ class Job:
         wanted_times = np.linspace(times[0], times[-1], min(FRAMES, len(times)))
         chosen = np.unique(np.searchsorted(times, wanted_times - 1e-12).clip(0, len(times) - 1))
         places = self.setup.engine.sweep("places", times[chosen], states[chosen])
-        sketch = compile_places.sketch(machine_of(self.setup.study))
+        sketch = compile_places.sketch(self.setup.study.compiled)
         return animation.page(self.setup.steps.program.title, sketch, times[chosen], places)
 
 
@@ -136,18 +135,26 @@ def job(study: Study, request: Request) -> Job:
         UsageError: the request contradicts itself or the scene.
         CheckError: the start cannot be moved to the constraints.
     """
-    wish = checked(Wish(request.method, request.step, request.rtol, request.atol), study)
+    wish = checked(_wish(study, request), study)
     start = start_of(study, request.state, _inputs(request.inputs))
-    extra = (compile_places.function(machine_of(study)),) if request.animate else ()
-    made = setup(study, wanted(wish, study), start, extra)
+    extra = (compile_places.function(study.compiled),) if request.animate else ()
+    made = setup(study, (wanted(wish, study),), start, extra)
     choice = choose(wish, made, request.t_end)
     if choice.is_fixed and choice.method not in {m.name for m in made.steps.methods}:
-        made = setup(study, choice.method, start, extra)
+        made = setup(study, (choice.method,), start, extra)
     _known(made, request.show)
     outputs = simulate.outputs_of(
         (start.time, start.time + request.t_end), choice, request.output_step
     )
     return Job(request, made, choice, outputs)
+
+
+def _wish(study: Study, request: Request) -> Wish:
+    """What was said on the command line; what it leaves open, the spec may say."""
+    said = study.model.simulation
+    if request.method != AUTO or request.step or request.rtol or request.atol or not said.method:
+        return Wish(request.method, request.step, request.rtol, request.atol)
+    return Wish(said.method, None if said.step is None else float(said.step))
 
 
 def _inputs(texts: tuple[str, ...]) -> dict[str, str]:

@@ -50,14 +50,16 @@ class Setup:
     is_compiled: bool
 
 
-def setup(study: Study, method: str, start: Start, extra: tuple[Function, ...] = ()) -> Setup:
-    """The engine of a study with the steps of a method (any but those of C: none).
+def setup(
+    study: Study, methods: tuple[str, ...], start: Start, extra: tuple[Function, ...] = ()
+) -> Setup:
+    """The engine of a study with the steps of these methods (those that are not of C have none).
 
     Raises:
         UsageError: the method is not for this scene, or the compiler fails.
     """
-    steps = stepping.of(study, (method,) if method in METHODS else ())
-    machine = stepping.machine_of(study)
+    steps = stepping.of(study, tuple(m for m in methods if m in METHODS))
+    machine = study.compiled
     flow = _flow(study)
     more = (compile_steps.state_jacobian(machine), *flow, *_contacts(study), *extra)
     steps = replace(steps, program=stepping.extended(steps.program, more))
@@ -92,7 +94,7 @@ def touching_of(study: Study) -> Touching | None:
 
 def _flow(study: Study) -> tuple[Function, ...]:
     """Energy and power; none where constraints do work that the reduced equations do not know."""
-    machine = stepping.machine_of(study)
+    machine = study.compiled
     if machine is not study.machine and _moves(study):
         return ()
     return compile_flow.functions(machine, touching_of(study))
@@ -140,7 +142,7 @@ def _event(text: str) -> tuple[str, str]:
 
 def is_separable(study: Study) -> bool:
     """Whether Verlet's method is symplectic."""
-    return not separable.obstacle(stepping.machine_of(study))
+    return not separable.obstacle(study.compiled)
 
 
 def start_of(study: Study, text: str, inputs: Mapping[str, str]) -> Start:
@@ -154,7 +156,7 @@ def start_of(study: Study, text: str, inputs: Mapping[str, str]) -> Start:
     moved, state = 0.0, found
     if study.links is not None and study.machine.kept:
         source = study.links.full_program()
-        state = evaluate_linked.placed(study.links, source, found, True)
+        state = evaluate_linked.placed(study.links, source, [found], project=True)[0]
         moved = _distance(found, state)
     numbers = _named(study, state)
     program = study.program

@@ -13,12 +13,13 @@ from typing import Any
 import sympy as sp
 
 from eomgen.errors import UsageError
-from eomgen.mechanics import machine
+from eomgen.mechanics import machine, speeds
 from eomgen.model import Model
 
-KEYS = ("t", "coordinates", "rates", "speeds", "inputs", "parameters")
+KEYS = ("t", "coordinates", "rates", "speeds", "accelerations", "inputs", "parameters")
 LONGEST_NUMBER = 400  # characters
 LARGEST_EXPONENT = 4000
+UNIT_TOLERANCE = sp.Rational(1, 10**9)  # of the square of a quaternion's length
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,7 @@ class State:
     speeds: tuple[sp.Expr, ...] | None
     inputs: tuple[sp.Expr, ...]
     parameters: tuple[sp.Expr, ...]
+    accelerations: tuple[sp.Expr, ...] | None = None  # of the speeds, where they are given
 
 
 def read(text: str, model: Model, *, needs_time: bool) -> tuple[State, ...]:
@@ -124,8 +126,24 @@ class _Reader:
             speeds=speeds,
             inputs=self.values(entry, "inputs", [i.name for i in model.inputs], {}),
             parameters=self.parameters(entry),
+            accelerations=self.accelerations(entry),
         )
+        self.quaternions(state)
         return state if len(self.problems) == before else None
+
+    def quaternions(self, state: State) -> None:
+        """Note every quaternion whose length is not 1."""
+        if len(state.coordinates) < len(self.model.coordinates):
+            return  # said already
+        symbols = [c.symbol for c in self.model.coordinates]
+        given = dict(zip(symbols, state.coordinates, strict=True))
+        for q in self.model.quaternions:
+            excess = sp.Abs(sum(given[s] ** 2 for s in q.symbols) - 1)
+            if excess > UNIT_TOLERANCE:
+                self.wrong(
+                    f"the quaternion {q.name} is not of length 1 (its square is off by "
+                    f"{float(excess):.1e}); divide it by its length"
+                )
 
     def motion(
         self, entry: Mapping[str, Any]
@@ -144,6 +162,12 @@ class _Reader:
             if c.rate.name in model.initial
         }
         return self.values(entry, "rates", [c.name for c in model.coordinates], initial), None
+
+    def accelerations(self, entry: Mapping[str, Any]) -> tuple[sp.Expr, ...] | None:
+        """The derivatives of the speeds, all or none; by coordinate where no speed is declared."""
+        if "accelerations" not in entry:
+            return None
+        return self.values(entry, "accelerations", [*speeds.names(self.model)], {})
 
     def time(self, entry: Mapping[str, Any], needed: bool) -> sp.Expr:
         """The time; free to be left out where nothing depends on it."""

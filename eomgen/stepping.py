@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from eomgen import compile_steps
-from eomgen.compile import Machine
 from eomgen.compile_steps import Scene
 from eomgen.integrators import methods
 from eomgen.integrators.steps import Steps
@@ -30,12 +29,7 @@ def of(study: Study, names: tuple[str, ...], *, compensated: bool = False) -> St
 
 def scene_of(study: Study) -> Scene:
     """The machines that are integrated."""
-    return Scene(machine_of(study), study.machine)
-
-
-def machine_of(study: Study) -> Machine:
-    """The machine of the study's program."""
-    return study.machine if study.links is None else study.links.chosen.machine
+    return Scene(study.compiled, study.machine)
 
 
 def extended(program: Program, extra: Sequence[Function]) -> Program:

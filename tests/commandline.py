@@ -39,7 +39,12 @@ def run(*words, text=None, **more):
 def together(commands, **more):
     """Run programs side by side; what each said, in order."""
     running = [start(*words, **more) for words in commands]
-    return [finish(process) for process in running]
+    try:
+        return [finish(process) for process in running]
+    finally:
+        for process in running:  # where one failed, the others are neither left running nor open
+            process.kill()
+            process.communicate()
 
 
 def eomgen(*words):

@@ -6,6 +6,7 @@ from fractions import Fraction
 import sympy as sp
 
 from eomgen.program import (
+    IN_MOTION,
     OPERATORS,
     Apply,
     Assign,
@@ -206,8 +207,17 @@ def chain(size=TOO_LARGE_TO_UNROLL):
     names = tuple(f"u{i}" for i in range(size))
     statements = (Solve(names, matrix, right),)
     some = tuple(Value(name) for name in names[1:])  # the first is not read
+    columns = (*right, *(mul(x, x) for x in q))
+    both = tuple(f"w{i}" for i in range(2 * size))
     functions = (
         Function("accelerations", "u'", (size - 1,), statements, some),
+        Function(
+            "columns",
+            "two right sides",
+            (2, size),
+            (Solve(both, matrix, columns),),
+            tuple(Value(name) for name in both),
+        ),
         Function("nothing", "no results", (0,), (), ()),
     )
     return program(
@@ -215,6 +225,25 @@ def chain(size=TOO_LARGE_TO_UNROLL):
         functions,
         coordinates=tuple(Variable(f"q{i}") for i in range(size)),
         speeds=tuple(Variable(f"q{i}'") for i in range(size)),
+        parameters=(Variable("m", "kg", "", sp.Integer(5)),),
+    )
+
+
+def in_motion():
+    """A function of chosen accelerations, and one that takes them without reading them."""
+    q, u, a, force = (Read(*r) for r in (("state", 0), ("state", 1), ("accelerations", 0),
+                                         ("inputs", 0)))  # fmt: skip
+    mass = Read("parameters", 0)
+    needed = sub(add(mul(mass, a), mul(op("sin", q), u)), force)
+    return program(
+        "in_motion",
+        (
+            Function("inverse_dynamics", "tau", (1,), (), (needed,), IN_MOTION),
+            Function("inverse_dynamics_jacobian", "constant", (1,), (), (mass,), IN_MOTION),
+        ),
+        coordinates=(Variable("q"),),
+        speeds=(Variable("q'"),),
+        inputs=(Variable("F"),),
         parameters=(Variable("m", "kg", "", sp.Integer(5)),),
     )
 
@@ -228,12 +257,16 @@ PROGRAMS = {
         awkward_names("lambda", as_parameters=False),
         open_parameters(),
         chain(),
+        in_motion(),
     )
 }
 
 
-def arguments(program, seed):
-    """A random t, state, inputs, parameters at which every fixture is defined."""
+def arguments(program, seed, function=None):
+    """A random t, state, inputs, parameters at which every fixture is defined.
+
+    A function in motion has accelerations behind the state.
+    """
     rng = random.Random(f"{program.name} {seed}")
 
     def draw(variables):
@@ -241,4 +274,7 @@ def arguments(program, seed):
 
     state = draw(program.coordinates + program.speeds)
     parameters = [rng.uniform(1, 3) for _ in program.parameters]
-    return rng.random(), state, draw(program.inputs), parameters
+    rest = (draw(program.inputs), parameters)
+    if function is not None and function.arguments == IN_MOTION:
+        rest = (draw(program.speeds), *rest)
+    return rng.random(), state, *rest

@@ -15,8 +15,10 @@ from eomgen.numerics.engine_python import EnginePython
 from eomgen.numerics.records import Arguments, Grid
 from eomgen.wanted import Wanted
 
-# skew axes and full inertia; M(q); linked; quasi-velocities; constant M with the forces of springs
-SCENES = ("skew_arm", "double_pendulum", "four_bar", "satellite", "sprung_pair")
+# skew axes and full inertia; M(q); linked; quasi-velocities; constant M; quaternions
+SCENES = (
+    "skew_arm", "double_pendulum", "four_bar", "satellite", "sprung_pair", "ball_joints",
+)  # fmt: skip
 
 
 @cache
@@ -27,7 +29,7 @@ def steps_of(name, formulation="auto", compensated=False):
         else study.of_model(model_of(name), Wanted(formulation))
     )
     steps = stepping.of(found, ("all",), compensated=compensated)
-    machine = stepping.machine_of(found)
+    machine = found.compiled
     more = (compile_steps.state_jacobian(machine), *compile_flow.functions(machine))
     return replace(steps, program=stepping.extended(steps.program, more))
 

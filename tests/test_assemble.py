@@ -226,13 +226,13 @@ def test_a_system_in_a_loop_equals_the_unrolled_one(size):
     q = [graph.read("state", i) for i in range(size)]
     matrix = [[g.cos(a) * g.cos(b) + (5 if a is b else 0) for b in q] for a in q]
     right = [g.sin(a) + graph.read("inputs", 0) for a in q]
-    loop = ldl.solve_in_loop(matrix, right)
+    (loop,) = ldl.solve_in_loop(matrix, right)
     (unrolled,), pivots = ldl.solve(matrix, right)
     outputs = [loop[0] * loop[-1] + q[0], *loop]
     function = one(*outputs)
     assert_well_formed(function)
     (solve,) = [s for s in function.statements if isinstance(s, Solve)]
-    assert len(solve.names) == len(solve.right) == size
+    assert len(solve.names) == len(solve.right) == solve.size == size
     assert len(solve.matrix) == size * (size + 1) // 2
     arguments = random_arguments(size)
     found = interpreter.run(function, arguments, FLOAT)

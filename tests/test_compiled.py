@@ -30,15 +30,15 @@ def python_of(name):
 
 def reference(program, function, given):
     t, *rest = given
-    named = dict(zip(("state", "inputs", "parameters"), rest, strict=True))
+    named = dict(zip(function.arguments[1:], rest, strict=True))
     return np.reshape(run(function, {"time": [t], **named}, FLOAT), function.shape)
 
 
 def states(name):
     program = PROGRAMS[name]
     for seed in SEEDS:
-        given = arguments(program, seed)
         for function in program.functions:
+            given = arguments(program, seed, function)
             yield function, given, reference(program, function, given)
 
 
@@ -65,9 +65,9 @@ def test_c_in_float_is_close(name):
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_python_is_the_interpreter(name):
     loaded = python_of(name)
-    for function, (t, state, inputs, parameters), expected in states(name):
+    for function, (*positional, parameters), expected in states(name):
         given = dict(zip(loaded.PARAMETERS, parameters, strict=True))
-        found = getattr(loaded, function.name)(t, state, inputs, given)
+        found = getattr(loaded, function.name)(*positional, given)
         np.testing.assert_allclose(found, expected, rtol=1e-13, atol=1e-14)
 
 
@@ -136,6 +136,15 @@ def test_results_may_overlap_the_state():
     call.argtypes = [ctypes.c_double, *[ctypes.c_void_p] * 4]
     assert call(0.0, shared, inputs, p, shared) == 0
     assert list(shared) == expected.tolist()
+
+
+def test_python_takes_accelerations_for_many_states():
+    loaded, (t, state, moving, inputs, _) = python_of("in_motion"), (0, [1, 2], [3], [4], [5])
+    many = loaded.inverse_dynamics(t, np.ones((2, 7)) * [[1], [2]], np.full((1, 7), 3.0), inputs)
+    assert many.shape == (1, 7)
+    assert many[:, 3].tolist() == loaded.inverse_dynamics(t, state, moving, inputs).tolist()
+    with pytest.raises(ValueError, match="they need 1 rows: q'"):
+        loaded.inverse_dynamics(t, state, [1, 2], inputs)
 
 
 def test_a_wrong_number_of_arguments_is_refused():

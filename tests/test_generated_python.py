@@ -17,6 +17,7 @@ from eomgen.numerics.compiled import load_python
 pytestmark = pytest.mark.slow
 
 SHORT = 0.5  # seconds of motion
+FAST = {"andrews_squeezer": 0.002}  # seconds, of a mechanism that turns in milliseconds
 CONSERVATIVE = """
 atwood_machine central_force double_pendulum elastic_pendulum heavy_top rigid_body
 rolling_cylinder simple_pendulum slider_pendulum_free slider_spring_pendulum sliding_ladder
@@ -80,13 +81,21 @@ def moved(module, case):
     start = getattr(module, "INITIAL_STATE", arguments(case)["state"][0])
     inputs = np.zeros(len(module.INPUTS))
     found = solve_ivp(
-        module.state_derivative, (0.0, SHORT), start, args=(inputs,), rtol=1e-10, atol=1e-12
+        module.state_derivative,
+        (0.0, FAST.get(stem(case), SHORT)),
+        start,
+        args=(inputs,),
+        rtol=1e-10,
+        atol=1e-12,
     )
     assert found.success
     return found, module.energy(found.t, found.y, inputs)
 
 
-@pytest.mark.parametrize("case", CASES)
+MOVING = [c for c in CASES if not model_of(stem(c)).guides]  # a rough guide moves in a mode
+
+
+@pytest.mark.parametrize("case", MOVING)
 def test_solve_ivp_takes_it_as_it_is(case, module):
     found, _ = moved(module(case), case)
     assert np.isfinite(found.y).all()

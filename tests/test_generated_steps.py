@@ -12,9 +12,7 @@ from tools import tool
 from eomgen.render.names import prefix
 
 BUILDS = [(compiler, real) for compiler in ("gcc", "clang") for real in ("double", "float")]
-QUICK = ("four_bar",)
 FRAMES = 400  # bytes of saved registers, spilled values and return addresses, in three calls
-MARKED = [pytest.param(n, marks=() if n in QUICK else pytest.mark.slow) for n in SHIPPED]
 
 
 def written(name, folder, *more):
@@ -22,8 +20,9 @@ def written(name, folder, *more):
     return folder / f"{name}_steps.c"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("more", [(), ("--compensated",)], ids=["plain", "compensated"])
-@pytest.mark.parametrize("name", MARKED)
+@pytest.mark.parametrize("name", SHIPPED)
 def test_no_warning_in_any_build(name, more, tmp_path):
     source = written(name, tmp_path, *more)
     define = {"double": (), "float": (f"-D{prefix(name).upper()}_FLOAT",)}
@@ -33,6 +32,7 @@ def test_no_warning_in_any_build(name, more, tmp_path):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["skew_arm", "four_bar"])
 def test_the_stack_is_at_most_what_the_header_says(name, tmp_path):
     written(name, tmp_path)
@@ -57,6 +57,7 @@ def _joined(text):
     return re.sub(r"\n \*       (?=\S)", " ", text)
 
 
+@pytest.mark.slow
 def test_the_header_is_cpp_too_and_the_source_needs_no_library(tmp_path):
     written("four_bar", tmp_path)
     main = tmp_path / "main.cpp"
@@ -69,6 +70,7 @@ def test_the_header_is_cpp_too_and_the_source_needs_no_library(tmp_path):
     assert not re.search(r"\b(malloc|calloc|while|goto|static \w+ \w+ =)", text)
 
 
+@pytest.mark.slow
 def test_every_loop_has_a_fixed_count(tmp_path):
     text = written("four_bar", tmp_path).read_text()
     loops = re.findall(r"for \(int \w+ = ([^;]+); \w+ (<|>=) ([^;]+); \w+(?:\+\+|--)\)", text)
@@ -77,6 +79,7 @@ def test_every_loop_has_a_fixed_count(tmp_path):
     assert all(bound.fullmatch(first) and bound.fullmatch(last) for first, _, last in loops)
 
 
+@pytest.mark.slow
 def test_only_what_was_asked_for_is_written(tmp_path):
     words = ("generate", SHIPPED["skew_arm"], "-t", "c", "-o", tmp_path)
     run(*eomgen(*words, "--integrator", "rk4", "--integrator", "semi-euler"))
@@ -87,6 +90,7 @@ def test_only_what_was_asked_for_is_written(tmp_path):
     assert "factor(" not in source
 
 
+@pytest.mark.slow
 def test_without_integrators_there_are_no_steps(tmp_path):
     run(*eomgen("generate", SHIPPED["four_bar"], "-t", "c", "-o", tmp_path))
     assert sorted(p.name for p in tmp_path.iterdir()) == ["four_bar.c", "four_bar.h"]

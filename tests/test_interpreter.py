@@ -53,7 +53,7 @@ def singular(kind, unrolled):
     if unrolled:
         (x,), pivots = ldl.solve(matrix, right)
     else:
-        x, pivots = ldl.solve_in_loop(matrix, right), ()
+        (x,), pivots = ldl.solve_in_loop(matrix, right), ()
     function = assemble("accelerations", "", (2,), x, pivots)
     return lambda value: run(function, {"state": [value], "parameters": [1]}, KINDS[kind])
 

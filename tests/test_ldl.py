@@ -35,7 +35,7 @@ def test_solutions_are_exact(size, solve):
     matrix = leaves_of(graph, size)
     right = [graph.read("inputs", i) for i in range(size)]
     if solve == "loop":
-        x, pivots = ldl.solve_in_loop(matrix, right), ()
+        (x,), pivots = ldl.solve_in_loop(matrix, right), ()
     else:
         (x, _), pivots = ldl.solve(matrix, right, right[::-1])
         assert len(pivots) == size
@@ -109,10 +109,24 @@ def test_numeric_pivots_need_no_check():
 def test_the_loop_refuses_a_singular_matrix():
     graph = Graph()
     a, b = graph.read("state", 0), graph.read("state", 1)
-    x = ldl.solve_in_loop([[a, b], [b, a]], [a, b])
+    (x,) = ldl.solve_in_loop([[a, b], [b, a]], [a, b])
     assert evaluate(x, {a: 2.0, b: 1.0}, FLOAT) == [1.0, 0.0]
     with pytest.raises(ldl.SingularMassMatrix, match="row 1"):
         evaluate(x, {a: 2.0, b: 2.0}, FLOAT)
     with pytest.raises(ldl.SingularMassMatrix, match="row 2"):
         evaluate(x, {a: float("nan"), b: 2.0}, FLOAT)
-    assert ldl.solve_in_loop([], []) == []
+    assert ldl.solve_in_loop([], []) == [[]]
+
+
+def test_the_loop_solves_for_several_right_hand_sides_at_once():
+    graph = Graph()
+    matrix = leaves_of(graph, 4)
+    rights = [[graph.read("inputs", 4 * k + i) for i in range(4)] for k in range(3)]
+    together, numbers = ldl.solve_in_loop(matrix, *rights), random_spd(4, 9)
+    values = {a: Fraction(3 * i - 10, 7) for i, a in enumerate(sum(rights, []))}
+    values |= {matrix[i][j]: numbers[i][j] for i in range(4) for j in range(i + 1)}
+    alone = [ldl.solve_in_loop(matrix, right)[0] for right in rights]
+    assert [evaluate(x, values, EXACT) for x in together] == [
+        evaluate(x, values, EXACT) for x in alone
+    ]
+    assert len({node.operands[0] for x in together for node in x}) == 1

@@ -4,8 +4,10 @@ import re
 from pathlib import Path
 
 from click.testing import CliRunner
+from scenes import SHIPPED
 
 from eomgen.cli import commands
+from eomgen.functions.table import ROWS, ROWS_AT, STANDARD
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 SPEC = re.search(r"```yaml\n(eom: 1.*?)```", README, re.DOTALL)[1]
@@ -28,6 +30,22 @@ def test_errors_are_those_shown(tmp_path, monkeypatch):
     result = run("check", text, "bad.yaml", tmp_path, monkeypatch)
     assert result.exit_code == 2
     assert f"```\n{result.stderr.rstrip()}\n```" in README
+
+
+def test_base_parameters_are_those_shown():
+    result = CliRunner().invoke(commands, ["regressor", str(SHIPPED["two_link_arm"])])
+    assert f"```\n{result.stdout.rstrip()}\n```" in README
+
+
+def test_every_function_is_in_the_table():
+    names = [STANDARD, *ROWS, *(f"{name}:POINT" for name in ROWS_AT)]
+    (section,) = re.findall(r"^## Functions$.*?^## ", README, re.MULTILINE | re.DOTALL)
+    listed = [
+        n
+        for row in re.findall(r"^\| (`.*?) \|", section, re.MULTILINE)
+        for n in re.findall("`([^`]+)`", row)
+    ]
+    assert listed == names
 
 
 def test_there_are_two_commands_that_set_up():

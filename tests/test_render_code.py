@@ -66,9 +66,9 @@ def test_a_number_outside_the_doubles_is_refused(value):
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_lowering_changes_no_value(name):
     program = PROGRAMS[name]
-    t, *rest = arguments(program, seed=1)
-    given = {"time": [t], **dict(zip(("state", "inputs", "parameters"), rest, strict=True))}
     for function in program.functions:
+        t, *rest = arguments(program, 1, function)
+        given = {"time": [t], **dict(zip(function.arguments[1:], rest, strict=True))}
         expected = run(function, given, FLOAT)
         assert run(lower(function), given, FLOAT) == pytest.approx(expected, rel=1e-14, abs=0)
 
@@ -105,10 +105,10 @@ def test_unused_values_go_and_pivots_stay():
 
 
 def test_new_names_avoid_those_of_the_program():
-    statements = (Assign("power_1", add(X, Y)),)
-    results = (op("power", add(Value("power_1"), n(1)), n(2)),)
+    statements = (Assign("inner_1", add(X, Y)),)
+    results = (op("power", add(Value("inner_1"), n(1)), n(2)),)
     lowered = lower(Function("f", "", (1,), statements, results))
-    assert [s.name for s in lowered.statements] == ["power_1", "power_2"]
+    assert [s.name for s in lowered.statements] == ["inner_1", "inner_2"]
 
 
 def test_names_are_identifiers_each_once():

@@ -129,9 +129,9 @@ def test_only_numpy_is_imported_and_lines_are_short(name):
 
 def test_random_arguments_are_defined_for_every_fixture():
     for name, program in PROGRAMS.items():
-        _, state, inputs, parameters = arguments(program, seed=3)
         loaded = load_python(text_of(name), module(name))
-        given = dict(zip(loaded.PARAMETERS, parameters, strict=True))
         for function in program.functions:
-            result = getattr(loaded, function.name)(0.1, state, inputs, given)
+            _, *positional, parameters = arguments(program, 3, function)
+            given = dict(zip(loaded.PARAMETERS, parameters, strict=True))
+            result = getattr(loaded, function.name)(0.1, *positional, given)
             assert np.isfinite(result).all()

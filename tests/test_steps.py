@@ -12,7 +12,16 @@ from eomgen.numerics import integrate
 from eomgen.numerics.engine_c import EngineC
 from eomgen.numerics.records import NOT_FINITE, RESIDUAL, SINGULAR, STOPPED, Arguments, Grid
 
-EVERY = [(name, method) for name in SCENES for method in methods_of(name)]
+QUICK = ("skew_arm", "four_bar")
+SCENE = [pytest.param(n, marks=() if n in QUICK else pytest.mark.slow) for n in SCENES]
+# which methods a scene has is known here without deriving it; a test below holds it to that
+OFFERED = {name: tuple(m for m in METHODS if m != "verlet") for name in SCENES}
+OFFERED["sprung_pair"] = tuple(METHODS)
+EVERY = [
+    pytest.param(name, method, marks=() if name in QUICK else pytest.mark.slow)
+    for name in SCENES
+    for method in OFFERED[name]
+]
 
 
 def exact(name, span):
@@ -25,9 +34,9 @@ def exact(name, span):
     return found.y[:, -1]
 
 
+@pytest.mark.slow
 def test_every_scene_has_what_it_can_have():
-    assert "verlet" in methods_of("sprung_pair")
-    assert all("verlet" not in methods_of(n) for n in SCENES if n != "sprung_pair")
+    assert {name: tuple(methods_of(name)) for name in SCENES} == OFFERED
     assert steps_of("double_pendulum").is_canonical
     assert not steps_of("four_bar").is_canonical
     assert steps_of("satellite").has("rates")
@@ -63,7 +72,7 @@ def test_halving_the_step_shows_the_order(name, method):
     assert errors[-1] < 1e-2
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", SCENE)
 def test_rk4_with_small_steps_is_dop853(name):
     found = run(engine_c(name), "rk4", 0.5, 4000).states[-1]
     np.testing.assert_allclose(found, exact(name, 0.5), rtol=1e-9, atol=1e-10)
@@ -77,6 +86,7 @@ def energy_errors(name, method, step, span):
     return np.abs(energy - energy[0])
 
 
+@pytest.mark.slow
 def test_canonical_midpoint_keeps_the_energy_bounded_where_semi_euler_drifts():
     """NUMERICS: M(q) makes semi-implicit Euler drift; midpoint in (q, p) stays in a band."""
     drift = energy_errors("double_pendulum", "semi-euler", 0.005, 60.0)
@@ -85,6 +95,7 @@ def test_canonical_midpoint_keeps_the_energy_bounded_where_semi_euler_drifts():
     assert drift[-100:].max() > 5 * band.max()
 
 
+@pytest.mark.slow
 def test_verlet_keeps_the_energy_in_a_band_of_order_2():
     coarse = energy_errors("sprung_pair", "verlet", 0.01, 100.0)
     fine = energy_errors("sprung_pair", "verlet", 0.005, 100.0)
@@ -104,7 +115,9 @@ def test_the_work_of_dampers_and_inputs_balances_the_energy():
     assert errors[0] / errors[1] > 8
 
 
-@pytest.mark.parametrize("formulation", ["multiplier", "nullspace"])
+@pytest.mark.parametrize(
+    "formulation", ["multiplier", pytest.param("nullspace", marks=pytest.mark.slow)]
+)
 @pytest.mark.parametrize("method", ["semi-euler", "rk4", "dopri5", "rosenbrock2", "midpoint"])
 def test_projection_keeps_the_constraints_at_round_off(method, formulation):
     engine = engine_c("four_bar", formulation)
@@ -115,6 +128,7 @@ def test_projection_keeps_the_constraints_at_round_off(method, formulation):
         assert worst < (limit if METHODS[method].order == 1 else 3e-14)
 
 
+@pytest.mark.slow
 def test_without_the_projection_the_constraints_drift():
     """The same steps over a program without projection functions: what the test above would see."""
     from dataclasses import replace
@@ -139,6 +153,7 @@ def test_the_same_run_gives_the_same_bits():
     assert integrate.joined(parts).states.tobytes() == whole.states[1:].tobytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["skew_arm", "four_bar"])
 def test_float_follows_double(name):
     double = run(engine_c(name), "rk4", 0.5, 500).states[-1]
@@ -146,6 +161,7 @@ def test_float_follows_double(name):
     np.testing.assert_allclose(single, double, rtol=2e-3, atol=2e-4)
 
 
+@pytest.mark.slow
 def test_a_compensated_sum_keeps_what_float_loses():
     wanted = run(engine_c("double_pendulum"), "rk4", 2.0, 2000).states[-1]
     errors = [
@@ -167,6 +183,7 @@ def called(engine, method, state, h=0.01, t=0.0):
     return step(t, h, *places), state
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["semi_euler", "rk4", "rosenbrock2", "midpoint"])
 def test_a_step_that_cannot_be_made_leaves_the_state(method):
     steps = steps_of("skew_arm")
@@ -194,6 +211,7 @@ def test_a_residual_after_the_projection_is_told():
     assert bits == 0
 
 
+@pytest.mark.slow
 def test_rosenbrock_is_stable_where_explicit_methods_are_not():
     """Row 3 of the stability matrix: lambda h = 1e6 on a damped, stiff leg."""
     engine = engine_c("quarter_car")
@@ -207,6 +225,7 @@ def test_rosenbrock_is_stable_where_explicit_methods_are_not():
     assert wild.stopped & NOT_FINITE or np.abs(wild.states[-1]).max() > 1e6
 
 
+@pytest.mark.slow
 def test_time_is_counted_and_not_summed():
     """5e5 steps of 1e-3 in float: t += h would be off by a percent; a prescribed road sees it."""
     engine = engine_c("quarter_car", real="float")

@@ -199,8 +199,9 @@ def _value(node: Node, known: Mapping[Node, Any], arithmetic: Arithmetic) -> Any
 
 
 def solve_loop(entries: list[Any], size: int, arithmetic: Arithmetic) -> list[Any]:
-    """The solution of the system of a `program.Solve`: lower triangle row by row, then b."""
+    """The solution of the system of a `program.Solve`: lower triangle row by row, then columns."""
     starts = [i * (i + 1) // 2 for i in range(size + 1)]
     matrix = [entries[starts[i] : starts[i + 1]] for i in range(size)]
     factors = ldl.factor(matrix, arithmetic.require_positive)
-    return ldl.substitute(factors, entries[starts[size] :])
+    columns = (entries[at : at + size] for at in range(starts[size], len(entries), size))
+    return [value for column in columns for value in ldl.substitute(factors, column)]

@@ -12,7 +12,9 @@ from eomgen.algebra.graph import Graph, Node, below, sqrt
 
 HALF = Fraction(1, 2)
 
-RULES: dict[str, tuple[Callable[..., Node], ...]] = {
+Rules = Mapping[str, tuple[Callable[..., Node], ...]]
+
+RULES: Rules = {
     "add": (lambda y, a, b, d: d, lambda y, a, b, d: d),
     "subtract": (lambda y, a, b, d: d, lambda y, a, b, d: -d),
     "multiply": (lambda y, a, b, d: d * b, lambda y, a, b, d: a * d),
@@ -48,7 +50,9 @@ RULES: dict[str, tuple[Callable[..., Node], ...]] = {
 }
 
 
-def direction(graph: Graph, seeds: Mapping[Node, Node]) -> Callable[[Node], Node]:
+def direction(
+    graph: Graph, seeds: Mapping[Node, Node], rules: Rules = RULES
+) -> Callable[[Node], Node]:
     """The directional derivative as a function of the node: seeds give the rates of some nodes.
 
     All calls share one memory. A seed need not be a leaf: below it nothing is entered, so a
@@ -72,18 +76,18 @@ def direction(graph: Graph, seeds: Mapping[Node, Node]) -> Callable[[Node], Node
             elif waiting := [a for a in top.operands if a not in rates]:
                 stack.extend(waiting)
             else:
-                rates[top] = _rate(top, rates)
+                rates[top] = _rate(top, rates, rules)
         return rates[node]
 
     return along
 
 
-def _rate(node: Node, rates: Mapping[Node, Node]) -> Node:
+def _rate(node: Node, rates: Mapping[Node, Node], rules: Rules) -> Node:
     """The rate of a node from the rates of its operands: dy = sum (dy/da) da."""
     total = zero = node.graph.zero
     for index, operand in enumerate(node.operands):
         if rates[operand] is not zero:
-            total = total + RULES[node.operator][index](node, *node.operands, rates[operand])
+            total = total + rules[node.operator][index](node, *node.operands, rates[operand])
     return total
 
 
@@ -92,20 +96,34 @@ def along(node: Node, seeds: Mapping[Node, Node]) -> Node:
     return direction(node.graph, seeds)(node)
 
 
-def gradient(node: Node, variables: Sequence[Node]) -> list[Node]:
+def gradient(node: Node, variables: Sequence[Node], rules: Rules = RULES) -> list[Node]:
     """The partial derivatives of one node by all variables, in one reverse sweep."""
+    return pullback([(node, node.graph.one)], variables, rules)
+
+
+def pullback(
+    weighted: Sequence[tuple[Node, Node]], variables: Sequence[Node], rules: Rules = RULES
+) -> list[Node]:
+    """The sum of weight * d value / d variable for every variable, in one reverse sweep.
+
+    With (velocity, force) pairs and the speeds as variables these are the generalized forces.
+    """
+    if not weighted:
+        return [variable.graph.zero for variable in variables]
     wanted = 0
     for variable in variables:
         wanted |= variable.leaves
-    graph = node.graph
-    ends = set(variables)
-    adjoints = {node: graph.one}
-    for top in reversed(below([node], stop=lambda a: a in ends or not a.leaves & wanted)):
-        adjoint = adjoints.get(top, graph.zero)
-        if top in ends or adjoint is graph.zero:
+    ends, zero = set(variables), weighted[0][0].graph.zero
+    adjoints: dict[Node, Node] = {}
+    for value, weight in weighted:
+        adjoints[value] = adjoints.get(value, zero) + weight
+    values = [value for value, _ in weighted]
+    for top in reversed(below(values, stop=lambda a: a in ends or not a.leaves & wanted)):
+        adjoint = adjoints.get(top, zero)
+        if top in ends or adjoint is zero:
             continue
         for index, operand in enumerate(top.operands):
             if operand.leaves & wanted:
-                share = RULES[top.operator][index](top, *top.operands, adjoint)
-                adjoints[operand] = adjoints.get(operand, graph.zero) + share
-    return [adjoints.get(variable, graph.zero) for variable in variables]
+                share = rules[top.operator][index](top, *top.operands, adjoint)
+                adjoints[operand] = adjoints.get(operand, zero) + share
+    return [adjoints.get(variable, zero) for variable in variables]

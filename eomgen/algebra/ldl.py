@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from eomgen.algebra.graph import Node
@@ -43,11 +44,11 @@ def factor(matrix: Sequence[Sequence[Any]], check: Check) -> Factors:
     for k in reversed(range(len(rows))):
         check(k, rows[k][k], matrix[k][k])
         reciprocals[k] = 1 / rows[k][k]
-        _eliminate(rows, k, reciprocals[k])
+        eliminate(rows, k, reciprocals[k])
     return Factors(tuple(tuple(row[:-1]) for row in rows), tuple(reciprocals))
 
 
-def _eliminate(rows: list[list[Any]], k: int, reciprocal: Any) -> None:
+def eliminate(rows: list[list[Any]], k: int, reciprocal: Any) -> None:
     """A_ij -= L_ki A_kj with L_ki = A_ki / d_k; row k becomes L's."""
     for i in reversed(range(k)):
         if _is_zero(rows[k][i]):
@@ -90,24 +91,35 @@ def solve(
 ) -> tuple[list[list[Node]], Pivots]:
     """The solutions of A x = b for every b, unrolled, and each pivot with its scale A_kk."""
     pivots: list[tuple[Node, Node]] = []
-
-    def check(row: int, pivot: Node, scale: Node) -> None:
-        if pivot.operator == "number" and pivot.datum <= 0:
-            raise SingularMassMatrix(f"in row {row + 1}", pivot.datum)
-        if pivot.operator != "number":
-            pivots.append((pivot, scale))
-
-    factors = factor(matrix, check)
+    factors = factor(matrix, partial(check_pivot, pivots))
     return [substitute(factors, right) for right in rights], tuple(pivots)
 
 
-def solve_in_loop(matrix: Sequence[Sequence[Node]], right: Sequence[Node]) -> list[Node]:
-    """The solution of A x = b as opaque nodes: a program solves it in a loop, with its own checks.
+def check_pivot(pivots: list[tuple[Node, Node]], row: int, pivot: Node, scale: Node) -> None:
+    """Remember a pivot, which the program will check; a number is checked here.
 
-    The nodes depend on all entries but have no derivative.
+    Raises:
+        SingularMassMatrix: it is a number and not positive.
     """
-    if not right:
-        return []
-    entries = [matrix[i][j] for i in range(len(right)) for j in range(i + 1)]
-    system = right[0].graph.make("system", (*entries, *right), len(right))
-    return [system.graph.make("solved", (system,), row) for row in range(len(right))]
+    if pivot.operator == "number" and pivot.datum <= 0:
+        raise SingularMassMatrix(f"in row {row + 1}", pivot.datum)
+    if pivot.operator != "number":
+        pivots.append((pivot, scale))
+
+
+def solve_in_loop(matrix: Sequence[Sequence[Node]], *rights: Sequence[Node]) -> list[list[Node]]:
+    """The solutions of A x = b for every b as opaque nodes: a program finds them in a loop.
+
+    The program checks the pivots itself. The nodes depend on all entries but have no derivative.
+    """
+    size = len(matrix)
+    if not size or not rights:
+        return [[] for _ in rights]
+    entries = [matrix[i][j] for i in range(size) for j in range(i + 1)]
+    columns = [entry for right in rights for entry in right]
+    graph = columns[0].graph
+    system = graph.make("system", (*entries, *columns), size)
+    return [
+        [graph.make("solved", (system,), size * column + row) for row in range(size)]
+        for column in range(len(rights))
+    ]

@@ -76,21 +76,30 @@ def dependencies(matrix: Matrix, sizes: Sequence[Any] | None = None) -> dict[int
 
     sizes: what the entries of each row are small against; by default the largest of them.
     """
+    return {i: tuple(shares) for i, shares in combinations(matrix, sizes).items()}
+
+
+def combinations(matrix: Matrix, sizes: Sequence[Any] | None = None) -> dict[int, dict[int, Any]]:
+    """Each row that depends on rows before it -> which multiples of these it is the sum of.
+
+    sizes: as for `dependencies`.
+    """
     kept: list[tuple[list[Any], int]] = []  # (row with its combination behind it, pivot column)
-    found: dict[int, tuple[int, ...]] = {}
+    found: dict[int, dict[int, Any]] = {}
     width = len(matrix[0]) if matrix else 0
+    scales = [max(map(abs, row), default=0) or 1 for row in matrix] if sizes is None else sizes
     for i, row in enumerate(matrix):
-        # behind the row stands which multiples of the given rows it is
-        scaled = _scaled(row) if sizes is None else [v / sizes[i] for v in row]
-        work = scaled + [PRECISE.number(int(i == k)) for k in range(len(matrix))]
+        # behind the row stands which multiples of the scaled rows it is
+        work = [v / scales[i] for v in row]
+        work += [PRECISE.number(int(i == k)) for k in range(len(matrix))]
         for pivot, column in kept:
             work = _without(work, pivot, column)
         size, column = max((abs(v), -j) for j, v in enumerate(work[:width]))
         if size > TOLERANCE:
             kept.append((work, -column))
         else:
-            shares = work[width : width + i]
-            found[i] = tuple(k for k, v in enumerate(shares) if abs(v) > TOLERANCE)
+            shares = enumerate(work[width : width + i])
+            found[i] = {k: -v * scales[i] / scales[k] for k, v in shares if abs(v) > TOLERANCE}
     return found
 
 

@@ -18,7 +18,7 @@ from eomgen.algebra.normal import Form, Kernel
 from eomgen.algebra.scalar import S
 from eomgen.analysis.equilibrium_records import Balance, Link, Statics
 from eomgen.errors import UsageError
-from eomgen.mechanics import constraints, efforts
+from eomgen.mechanics import constraints, efforts, motions
 from eomgen.mechanics.equations import Contribution
 from eomgen.mechanics.kinematics import Flow, Kinematics
 from eomgen.mechanics.lagrange import Lagrangian, closed_kinematics, virtual_symbol
@@ -135,6 +135,7 @@ def _balance(
 ) -> Balance:
     algebra = lagrangian.kinematics.algebra
     coordinate = lagrangian.kinematics.model.coordinates[index]
+    motion = motions.of(lagrangian.kinematics.model, algebra)[index]
     name = coordinate.name
 
     def slope(kind: str) -> Form:
@@ -149,7 +150,7 @@ def _balance(
         gravity=slope("gravity"),
         other=slope("formula"),
         damping=_resting(rest, damping, name),
-        applied=_resting(rest, lagrangian.force(coordinate), name),
+        applied=_resting(rest, lagrangian.force(motion), name),
         reaction=normal.total(rest.algebra.ring, shares),
     )
 

@@ -16,6 +16,7 @@ from eomgen.checks.evaluation import Bench, benches, over, singly, symbol_of
 from eomgen.checks.samples import Samples
 from eomgen.compile import Machine
 from eomgen.errors import CheckError
+from eomgen.mechanics import lagrange
 from eomgen.mechanics.equations import Derivation, Equations
 
 FLOAT_TOLERANCE = 1e-9  # a larger disagreement in double is decided in 50 digits
@@ -123,6 +124,7 @@ def proven(derivation: Derivation, machine: Machine) -> bool:
 def _identical(machine: Machine, nodes: Sequence[Any], forms: Sequence[Form]) -> bool:
     """The graph evaluated over the closed form, less the closed form, is zero."""
     algebra = ClosedForm()
+    lagrange.normed(algebra, machine.model)
     arithmetic = arithmetic_over(algebra)
     arithmetic = replace(
         arithmetic, functions={**arithmetic.functions, "multiply": _bounded_product}

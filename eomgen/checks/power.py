@@ -15,6 +15,7 @@ from typing import Any
 import sympy as sp
 
 from eomgen.algebra.arithmetic import mpmath_arithmetic
+from eomgen.algebra.derive import direction, gradient
 from eomgen.algebra.graph import Node
 from eomgen.checks.agreement import DECIDING_STATES, DIGITS, EXACT_TOLERANCE, FLOAT_TOLERANCE
 from eomgen.checks.evaluation import Bench, benches, over, singly
@@ -55,12 +56,14 @@ def imbalance(terms: Sequence[Node], at: Bench) -> Any:
 
 
 def balance_terms(machine: Machine) -> list[Node]:
-    """Terms that add up to zero on every motion."""
-    algebra = machine.kinematics.algebra
+    """Terms that add up to zero on every motion; each gradient is one reverse sweep."""
+    algebra, potential = machine.kinematics.algebra, machine.energy[1]
     motion = motion_of(machine)
-    terms = [algebra.along(inertial_energy(machine), {s: r}) for s, r in motion.items()]
-    potential = machine.energy[1]
-    terms += [algebra.along(potential, {s: r}) for s, r in motion.items() if s != TIME]
+    slopes = gradient(inertial_energy(machine), [algebra.of(s) for s in motion])
+    terms = [slope * rate for slope, rate in zip(slopes, motion.values(), strict=True)]
+    moving = [s for s in motion if s != TIME]
+    slopes = gradient(potential, [algebra.of(s) for s in moving])
+    terms += [slope * motion[s] for slope, s in zip(slopes, moving, strict=True)]
     terms += [-power for power in _powers(machine, relative_speeds(machine))]
     terms += [-power for power in _constraint_powers(machine)]
     return terms + _explicit_terms(machine)
@@ -87,8 +90,8 @@ def flow(machine: Machine) -> tuple[Node, Node]:
 
 def _momenta(machine: Machine) -> list[Node]:
     """p = dT/du."""
-    algebra, one = machine.kinematics.algebra, machine.kinematics.algebra.number(1)
-    return [algebra.along(machine.energy[0], {s: one}) for s in speeds.symbols(machine.model)]
+    algebra = machine.kinematics.algebra
+    return gradient(machine.energy[0], [algebra.of(s) for s in speeds.symbols(machine.model)])
 
 
 def _explicit_terms(machine: Machine) -> list[Node]:
@@ -119,9 +122,11 @@ def _powers(machine: Machine, relative: Sequence[Node]) -> Iterable[Node]:
         *efforts.dissipative(machine.kinematics),
         *efforts.nonconservative(machine.kinematics),
     ]
+    algebra = machine.kinematics.algebra
+    leaves = [algebra.of(s) for s in speeds.symbols(machine.model)]
+    along = direction(algebra.number(0).graph, dict(zip(leaves, relative, strict=True)))
     for effort in everything:
-        for symbol, speed in zip(speeds.symbols(machine.model), relative, strict=True):
-            yield efforts.generalized_force(machine.kinematics, effort, symbol) * speed
+        yield dot(effort.force, [along(v) for v in effort.velocity])
 
 
 def _constraint_powers(machine: Machine) -> list[Node]:
@@ -130,7 +135,8 @@ def _constraint_powers(machine: Machine) -> list[Node]:
         return []
     rows = machine.schur.rows
     pairs = zip(machine.linked.multipliers, rows, strict=True)
-    return [multiplier * dot(row.jacobian, machine.rates) for multiplier, row in pairs]
+    relative = relative_speeds(machine)
+    return [multiplier * dot(row.jacobian, relative) for multiplier, row in pairs]
 
 
 def _moving_powers(machine: Machine) -> list[Node]:

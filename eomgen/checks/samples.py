@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -24,6 +25,7 @@ class Samples:
     inputs: list[list[float]]
     parameters: list[list[float]]
     accelerations: list[list[float]]  # of the speeds
+    exact: Samples | None = None  # the same in 50 digits, where floats are off the constraints
 
     def arguments(self) -> dict[str, list[list[float]]]:
         """The components by the names that `program.Read` uses."""
@@ -44,11 +46,13 @@ def draw(model: Model, count: int = COUNT, seed: int = 1) -> Samples:
         return [chance.uniform(low, high) for _ in range(count)]
 
     given = constants(model)
+    places = [values(*bounds(model, c, given)) for c in model.coordinates]
+    _normalise(model, places)
     return Samples(
         count=count,
         time=values(0.0, 3.0),
         state=[
-            *(values(*bounds(model, c, given)) for c in model.coordinates),
+            *places,
             *(values(-2.0, 2.0) for _ in unknown),
         ],
         inputs=[values(-2.0, 2.0) for _ in model.inputs],
@@ -59,6 +63,17 @@ def draw(model: Model, count: int = COUNT, seed: int = 1) -> Samples:
         ],
         accelerations=[values(-2.0, 2.0) for _ in unknown],
     )
+
+
+def _normalise(model: Model, places: list[list[float]]) -> None:
+    """Give the quaternions among sampled coordinates the length 1."""
+    index = {c.symbol: i for i, c in enumerate(model.coordinates)}
+    for quaternion in model.quaternions:
+        parts = [places[index[s]] for s in quaternion.symbols]
+        for k, values in enumerate(zip(*parts, strict=True)):
+            length = math.hypot(*values)
+            for part in parts:
+                part[k] /= length
 
 
 def constants(model: Model) -> dict[sp.Symbol, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from eomgen.integrators.methods import MIDPOINT_ITERATIONS, Method
 from eomgen.integrators.tableaus import Tableau
@@ -33,14 +33,28 @@ class Steps:
 
     @property
     def projects_positions(self) -> bool:
-        """Whether some row holds between positions."""
-        rows = [f for f in self.program.functions if f.name == "constraint_residuals"]
-        return self.has("project_positions") and rows[0].shape != (0,)
+        """Whether positions can be off: a row holds between them, or a quaternion has a length."""
+        return self.has("project_positions") and (
+            self.residuals > 0 or not self.has("constraint_residuals")
+        )
+
+    @property
+    def residuals(self) -> int:
+        """The number of rows between positions."""
+        found = (f for f in self.program.functions if f.name == "constraint_residuals")
+        return next((f.shape[0] for f in found), 0)
 
     @property
     def size(self) -> int:
         """Length of the state."""
         return len(self.program.coordinates) + len(self.program.speeds)
+
+    def completing(self, program: Program) -> Program:
+        """A program with what the steps call."""
+        known = {f.name for f in program.functions}
+        called = {name for method in self.methods for name in self.calls(method)} - known
+        more = tuple(f for f in self.program.functions if f.name in called)
+        return replace(program, functions=program.functions + more)
 
     def calls(self, method: Method) -> dict[str, int]:
         """How often one step calls each function of the program."""

@@ -24,7 +24,7 @@ from eomgen.mechanics.elongation import (
 from eomgen.mechanics.energies import has_potential
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.vectors import Vector, dot, scale, subtract, transform
-from eomgen.model import Damper, Force, Moment, Spring
+from eomgen.model import Damper, Drive, Force, Moment, Spring
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,8 @@ def nonconservative(kinematics: Kinematics[S]) -> Iterator[Effort[S]]:
             yield Effort(damper.name, "damper", (-pull,), (rate,))
     for force in model.forces:
         yield _force(kinematics, force)
+    for drive in model.drives:
+        yield _drive(kinematics, drive)
     for moment in model.moments:
         yield _moment(kinematics, moment)
 
@@ -64,6 +66,11 @@ def _force(kinematics: Kinematics[S], force: Force) -> Effort[S]:
     return Effort(force.name, "force", vector, velocity)
 
 
+def _drive(kinematics: Kinematics[S], drive: Drive) -> Effort[S]:
+    rate = kinematics.rate(kinematics.algebra.of(drive.along))
+    return Effort(drive.name, "force", (kinematics.algebra.of(drive.force),), (rate,))
+
+
 def _moment(kinematics: Kinematics[S], moment: Moment) -> Effort[S]:
     vector = kinematics.vector(moment.components)
     if kinematics.dimensions == 2:
@@ -71,13 +78,14 @@ def _moment(kinematics: Kinematics[S], moment: Moment) -> Effort[S]:
         if moment.source is not None:
             spin = subtract(spin, kinematics.angular_velocity(moment.source))
         return Effort(moment.name, "moment", vector, spin)
-    spin = _world_spin(kinematics, moment.on)
+    spin = world_spin(kinematics, moment.on)
     if moment.source is not None:
-        spin = subtract(spin, _world_spin(kinematics, moment.source))
+        spin = subtract(spin, world_spin(kinematics, moment.source))
     return Effort(moment.name, "moment", kinematics.to_world(vector, moment.axes), spin)
 
 
-def _world_spin(kinematics: Kinematics[S], name: str) -> Vector[S]:
+def world_spin(kinematics: Kinematics[S], name: str) -> Vector[S]:
+    """The angular velocity of a body in solid space, in world axes."""
     spin = kinematics.angular_velocity(name)
     is_rod = kinematics.bodies[name].frame.along is not None
     return spin if is_rod else transform(kinematics.axes(name), spin)

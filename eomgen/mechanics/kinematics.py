@@ -6,9 +6,10 @@ component in a plane (about z) and three in solid space, in body axes (a rod's: 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from typing import Generic
 
 import sympy as sp
@@ -27,7 +28,7 @@ from eomgen.mechanics.vectors import (
     transform,
     transpose,
 )
-from eomgen.model import SPACES, Body, Model, Place
+from eomgen.model import SPACES, Body, Model, Place, Quaternion, Turn
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,7 @@ class Flow(Generic[S]):
 
     rates: Mapping[sp.Symbol, S]  # q -> q'
     derivatives: Mapping[sp.Symbol, S]  # q -> q', t -> 1, prescribed w -> w', ...
+    spins: Mapping[sp.Symbol, S] = field(default_factory=dict)  # speeds of quaternions
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,7 @@ class Kinematics(Generic[S]):
     angles: dict[str, S | None] = field(default_factory=dict)
     turning: dict[str, Vector[S]] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def bodies(self) -> dict[str, Body]:
         """Bodies by name."""
         return {b.name: b for b in self.model.bodies}
@@ -71,9 +73,16 @@ class Kinematics(Generic[S]):
         """Number of components of a vector."""
         return SPACES[self.model.space]
 
-    def rate(self, value: S) -> S:
-        """The time derivative of a value."""
-        return self.algebra.along(value, self.flow.derivatives)
+    @cached_property
+    def places(self) -> dict[str, Place]:
+        """Where the points and the mass centres are, by name."""
+        centres = {b.name: b.com for b in self.model.bodies}
+        return centres | {p.name: p.place for p in self.model.points}
+
+    @cached_property
+    def rate(self) -> Callable[[S], S]:
+        """The time derivative, as a function of the value."""
+        return self.algebra.direction(self.flow.derivatives)
 
     def vector(self, components: tuple[sp.Expr, ...]) -> Vector[S]:
         """Formulas as scalars."""
@@ -82,9 +91,7 @@ class Kinematics(Generic[S]):
     def position(self, name: str) -> Vector[S]:
         """A point, or a body's mass centre."""
         if name not in self.positions:
-            places = {p.name: p.place for p in self.model.points}
-            place = places[name] if name in places else self.bodies[name].com
-            self.positions[name] = self.place(place)
+            self.positions[name] = self.place(self.places[name])
         return self.positions[name]
 
     def velocity(self, name: str) -> Vector[S]:
@@ -127,9 +134,7 @@ class Kinematics(Generic[S]):
             return self._planar_axes(body)
         result = self._parent_axes(body)
         for turn in body.frame.turns:
-            axis = rotation.unit(self.algebra, turn.axis)
-            step = rotation.about(self.algebra, axis, self.algebra.of(turn.angle))
-            result = compose(result, step)
+            result = compose(result, rotation.of(self.algebra, turn))
         return result
 
     def _parent_axes(self, body: Body) -> Matrix[S]:
@@ -144,7 +149,8 @@ class Kinematics(Generic[S]):
         return compose(self._parent_axes(body), rotation.planar(self.algebra, own))
 
     def _own_angle(self, body: Body) -> S:
-        return sum((self.algebra.of(t.angle) for t in body.frame.turns), self.algebra.number(0))
+        angles = (self.algebra.of(angle) for t in body.frame.turns for angle in t.formulas)
+        return sum(angles, self.algebra.number(0))
 
     def angle(self, name: str) -> S | None:
         """The angle of a body in the plane from the world's x axis; None above a rod."""
@@ -187,11 +193,17 @@ class Kinematics(Generic[S]):
             return (own,) if spin is None else (spin[0] + own,)
         result = spin or tuple(self.algebra.number(0) for _ in range(3))
         for turn in body.frame.turns:
-            # w = R' w_before + e angle'
-            axis, angle = rotation.unit(self.algebra, turn.axis), self.algebra.of(turn.angle)
-            back = transpose(rotation.about(self.algebra, axis, angle))
-            result = add(transform(back, result), scale(self.rate(angle), axis))
+            # w = R' w_before + w_own
+            back = transpose(rotation.of(self.algebra, turn))
+            result = add(transform(back, result), self._own_spin(turn))
         return result
+
+    def _own_spin(self, turn: Turn | Quaternion) -> Vector[S]:
+        """The angular velocity of a turn, in the axes after it."""
+        if isinstance(turn, Quaternion):
+            return tuple(self.flow.spins[speed] for speed in turn.speeds)
+        rate = self.rate(self.algebra.of(turn.angle))
+        return scale(rate, rotation.unit(self.algebra, turn.axis))
 
     def _above(self, parent: str) -> Vector[S]:
         return self.angular_velocity(parent)

@@ -14,7 +14,7 @@ import sympy as sp
 from eomgen.algebra import normal
 from eomgen.algebra.closed import ClosedForm
 from eomgen.algebra.normal import Form
-from eomgen.mechanics import constraints, efforts, energies, quasi_velocities
+from eomgen.mechanics import constraints, efforts, energies, motions, quasi_velocities
 from eomgen.mechanics.equations import (
     ConstraintRow,
     Contribution,
@@ -28,7 +28,8 @@ from eomgen.mechanics.equations import (
     virtual_name,
 )
 from eomgen.mechanics.kinematics import Flow, Kinematics
-from eomgen.mechanics.vectors import dot
+from eomgen.mechanics.motions import Motion
+from eomgen.mechanics.vectors import cross, dot
 from eomgen.model import TIME, Coordinate, Model
 
 
@@ -43,7 +44,38 @@ def closed_kinematics(model: Model) -> Kinematics[Form]:
         derivatives[known.symbol] = algebra.of(known.rate)
         derivatives[known.rate] = algebra.of(known.acceleration)
     derivatives[TIME] = algebra.number(1)
-    return Kinematics(model, algebra, Flow(rates, derivatives))
+    normed(algebra, model)
+    spins = _turning(algebra, model, rates, derivatives)
+    return Kinematics(model, algebra, Flow(rates, derivatives, spins))
+
+
+def _turning(
+    algebra: ClosedForm,
+    model: Model,
+    rates: dict[sp.Symbol, Form],
+    derivatives: dict[sp.Symbol, Form],
+) -> dict[sp.Symbol, Form]:
+    """The speeds of quaternions; the parts move with these: no rate e' stays."""
+    spins: dict[sp.Symbol, Form] = {}
+    for q in model.quaternions:
+        own = {s: algebra.of(s) for s in q.speeds}
+        moved = dict(zip(q.symbols, motions.rates(q, algebra, tuple(own.values())), strict=True))
+        rates |= moved
+        derivatives |= moved
+        derivatives |= {s: algebra.of(sp.Symbol(f"{s.name}'", real=True)) for s in q.speeds}
+        spins |= own
+    return spins
+
+
+def normed(algebra: ClosedForm, model: Model) -> None:
+    """Have e_0^2 = 1 - e_1^2 - e_2^2 - e_3^2 hold for every quaternion.
+
+    Only derivatives along turns are taken, which keep the length: e . de = 0.
+    """
+    for q in model.quaternions:
+        rest = (algebra.of(s) for s in q.symbols[1:])
+        square = algebra.number(1) - normal.total(algebra.ring, (e * e for e in rest))
+        algebra.ring.squares[algebra.ring.atom(q.symbols[0])] = square
 
 
 @dataclass(frozen=True)
@@ -96,12 +128,30 @@ class Lagrangian:
         """D value / d symbol."""
         return self.kinematics.algebra.along(value, {symbol: self.kinematics.algebra.number(1)})
 
-    def force(self, coordinate: Coordinate) -> Form:
-        """Q of a coordinate, by virtual work."""
-        terms = (
-            efforts.generalized_force(self.kinematics, e, coordinate.rate) for e in self.efforts
-        )
+    def along(self, value: Form, motion: Motion[Form]) -> Form:
+        """The change of a value per displacement of a motion."""
+        return self.kinematics.algebra.along(value, motion.direction)
+
+    def force(self, motion: Motion[Form]) -> Form:
+        """Q of a motion, by virtual work."""
+        terms = (efforts.generalized_force(self.kinematics, e, motion.rate) for e in self.efforts)
         return normal.total(self.kinematics.algebra.number(0).ring, terms)
+
+    @cached_property
+    def moving(self) -> tuple[Motion[Form], ...]:
+        """What is varied."""
+        return motions.of(self.kinematics.model, self.kinematics.algebra)
+
+    @cached_property
+    def rows(self) -> tuple[LagrangeRow, ...]:
+        """The partial derivatives of each motion."""
+        return tuple(_row(self, m) for m in self.moving)
+
+    @cached_property
+    def equations(self) -> tuple[Equation, ...]:
+        """The equation of each motion."""
+        pairs = zip(self.moving, self.rows, strict=True)
+        return tuple(_equation(self, m, row) for m, row in pairs)
 
 
 def derive(model: Model) -> Derivation:
@@ -111,11 +161,9 @@ def derive(model: Model) -> Derivation:
         UsageError: declared speeds are not independent.
     """
     lagrangian = Lagrangian(closed_kinematics(model))
-    rows = tuple(_row(lagrangian, c) for c in model.coordinates)
-    pairs = zip(model.coordinates, rows, strict=True)
-    in_rates = tuple(_equation(lagrangian, c, row) for c, row in pairs)
-    rates, equations = quasi_velocities.project(lagrangian.kinematics, in_rates)
+    rates, equations = quasi_velocities.project(lagrangian.kinematics, lagrangian.equations)
     links = closed_rows(lagrangian.kinematics)
+    links = quasi_velocities.rows(lagrangian.kinematics, rates, links)
     equations = with_reactions(lagrangian.kinematics, equations, links)
     return Derivation(
         model=model,
@@ -128,7 +176,7 @@ def derive(model: Model) -> Derivation:
         kinetic_energy=lagrangian.kinetic_energy,
         potential_energy=lagrangian.potential_energy,
         dissipation_function=lagrangian.dissipation_function,
-        rows=rows,
+        rows=lagrangian.rows,
         equations=equations,
         matrix=matrix_form(lagrangian.kinematics, equations),
         constraints=links,
@@ -172,30 +220,47 @@ def multiplier_symbol(row: str) -> sp.Symbol:
     return sp.Symbol(multiplier_name(row), real=True)
 
 
-def _row(lagrangian: Lagrangian, coordinate: Coordinate) -> LagrangeRow:
+def _row(lagrangian: Lagrangian, motion: Motion[Form]) -> LagrangeRow:
     difference = lagrangian.kinetic_energy - lagrangian.potential_energy
-    momentum = lagrangian.partial(lagrangian.kinetic_energy, coordinate.rate)
+    momentum = lagrangian.partial(lagrangian.kinetic_energy, motion.rate)
     return LagrangeRow(
-        name=coordinate.name,
+        name=motion.name,
         momentum=momentum,
         momentum_rate=lagrangian.kinematics.rate(momentum),
-        slope=lagrangian.partial(difference, coordinate.symbol),
-        dissipation=lagrangian.partial(lagrangian.dissipation_function, coordinate.rate),
-        force=lagrangian.force(coordinate),
+        slope=lagrangian.along(difference, motion),
+        dissipation=lagrangian.partial(lagrangian.dissipation_function, motion.rate),
+        force=lagrangian.force(motion),
+        gyroscopic=_gyroscopic(lagrangian, motion),
     )
 
 
-def _equation(lagrangian: Lagrangian, coordinate: Coordinate, row: LagrangeRow) -> Equation:
+def _gyroscopic(lagrangian: Lagrangian, motion: Motion[Form]) -> Form | None:
+    """The component of w x dT/dw, for a turn.
+
+    Poincare's equations d/dt(dL/dw) + w x dL/dw - dL/d(turn) = Q in body-fixed axes (Poincare,
+    Comptes Rendus 132, 1901).
+    """
+    if motion.turn is None:
+        return None
+    quaternion, axis = motion.turn
+    speeds = tuple(lagrangian.kinematics.algebra.of(s) for s in quaternion.speeds)
+    kinetic = lagrangian.kinetic_energy
+    momenta = tuple(lagrangian.partial(kinetic, s) for s in quaternion.speeds)
+    return cross(speeds, momenta)[axis]
+
+
+def _equation(lagrangian: Lagrangian, motion: Motion[Form], row: LagrangeRow) -> Equation:
     """The row with its terms sorted by origin: dL/dq is dT/dq less every share of dV/dq."""
 
     def stiffness(kind: str) -> Form:
         shares = (s for s in lagrangian.potential if s.kind == kind)
-        return lagrangian.partial(lagrangian.sum(shares), coordinate.symbol)
+        return lagrangian.along(lagrangian.sum(shares), motion)
 
     elastic, gravity, other = (stiffness(kind) for kind in ("spring", "gravity", "formula"))
+    inertia = row.momentum_rate - (row.slope + elastic + gravity + other)
     return Equation(
         name=row.name,
-        inertia=row.momentum_rate - (row.slope + elastic + gravity + other),
+        inertia=inertia if row.gyroscopic is None else inertia + row.gyroscopic,
         damping=row.dissipation,
         elastic=elastic,
         gravity=gravity,
@@ -237,13 +302,13 @@ def _spins(kinematics: Kinematics[Form]) -> tuple[Spin, ...]:
 
 def _virtual_work(lagrangian: Lagrangian) -> tuple[Contribution[Form], ...]:
     """Force . delta r of every nonconservative effort."""
-    algebra, model = lagrangian.kinematics.algebra, lagrangian.kinematics.model
+    algebra = lagrangian.kinematics.algebra
     shares = []
     for effort in lagrangian.efforts:
         terms = (
-            efforts.generalized_force(lagrangian.kinematics, effort, c.rate)
-            * algebra.of(virtual_symbol(c))
-            for c in model.coordinates
+            efforts.generalized_force(lagrangian.kinematics, effort, m.rate)
+            * algebra.of(m.virtual_symbol)
+            for m in lagrangian.moving
         )
         work = normal.total(algebra.number(0).ring, terms)
         shares.append(Contribution(effort.name, effort.kind, work))

@@ -46,7 +46,8 @@ def moving(
     pairs = zip(model.coordinates, rates, strict=True)
     algebra = GraphAlgebra(graph, bindings | {c.rate: rate for c, rate in pairs})
     flow = {c.symbol: r for c, r in zip(model.coordinates, rates, strict=True)}
-    return Kinematics(model, algebra, Flow(flow, {**flow, TIME: graph.one}))
+    spins = {s: algebra.of(s) for q in model.quaternions for s in q.speeds}
+    return Kinematics(model, algebra, Flow(flow, {**flow, TIME: graph.one}, spins))
 
 
 def _arguments(model: Model, graph: Graph) -> dict[sp.Symbol, Node]:

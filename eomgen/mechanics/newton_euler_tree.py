@@ -96,7 +96,7 @@ def _symbols(expressions: Sequence[sp.Expr]) -> frozenset[sp.Symbol]:
 
 def _trace_of(model: Model, body: Body) -> Trace:
     """What places and turns a body."""
-    turns = _symbols([t.angle for t in body.frame.turns])
+    turns = _symbols([f for t in body.frame.turns for f in t.formulas])
     found = Trace(turns) + _trace(model, body.frame.origin, body)
     if body.frame.along:
         second = Place(body.com.components, ((sp.S.One, body.frame.along[1]),))

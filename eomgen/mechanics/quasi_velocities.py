@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import sympy as sp
 
 from eomgen.algebra.closed import Evaluation
 from eomgen.algebra.normal import Form
 from eomgen.algebra.scalar import Algebra
-from eomgen.mechanics import speeds
-from eomgen.mechanics.equations import Equation
+from eomgen.mechanics import motions, speeds
+from eomgen.mechanics.equations import ConstraintRow, Equation
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.vectors import dot
 from eomgen.model import TIME, Coordinate, Model, Prescribed
@@ -26,18 +27,52 @@ def project(
     if not model.speeds:
         return (), equations
     rates = speeds.rates(model, algebra)
+    named = tuple(replace(e, name=s.name) for e, s in zip(equations, model.speeds, strict=True))
+    if all(s.symbol == s.formula for s in speeds.plain(model)):
+        return rates, named  # the speeds are rates, but for those of quaternions
     substitute = _substitution(kinematics, rates)
     in_speeds = [
-        Equation(e.name, **{part: substitute(getattr(e, part)) for part in PARTS})
-        for e in equations
+        Equation(e.name, **{part: substitute(getattr(e, part)) for part in PARTS}) for e in named
     ]
+    return rates, _projected(kinematics, rates, in_speeds)
+
+
+def _projected(
+    kinematics: Kinematics[Form], rates: Sequence[Form], equations: Sequence[Equation]
+) -> tuple[Equation, ...]:
+    """The sums of dq'/du * equation of q; what belongs to a quaternion stays."""
+    model, algebra = kinematics.model, kinematics.algebra
+    own = motions.plain(model)
+    moving = [r for c, r in zip(model.coordinates, rates, strict=True) if c in own]
     one = algebra.number(1)
     result = []
-    for speed in model.speeds:
-        weights = [algebra.along(r, {speed.symbol: one}) for r in rates]
-        parts = {part: dot(weights, [getattr(e, part) for e in in_speeds]) for part in PARTS}
+    for speed in speeds.plain(model):
+        weights = [algebra.along(r, {speed.symbol: one}) for r in moving]
+        parts = {
+            part: dot(weights, [getattr(e, part) for e in equations[: len(own)]]) for part in PARTS
+        }
         result.append(Equation(speed.name, **parts))
-    return rates, tuple(result)
+    return (*result, *equations[len(own) :])
+
+
+def rows(
+    kinematics: Kinematics[Form], rates: tuple[Form, ...], found: tuple[ConstraintRow, ...]
+) -> tuple[ConstraintRow, ...]:
+    """Constraint rows over the speeds: J N u + ... = 0, and J N u' + gamma = 0."""
+    if not rates:
+        return found
+    model, algebra = kinematics.model, kinematics.algebra
+    substitute, one = _substitution(kinematics, rates), algebra.number(1)
+    coasting = {c.symbol: r for c, r in zip(model.coordinates, rates, strict=True)}
+    still = {s for c in model.coordinates for s in (c.symbol, c.rate)}
+    coasting |= {s: r for s, r in kinematics.flow.derivatives.items() if s not in still}
+    result = []
+    for row in found:
+        rate = substitute(row.rate)
+        jacobian = tuple(algebra.along(rate, {s.symbol: one}) for s in model.speeds)
+        gamma = algebra.along(rate, coasting)
+        result.append(replace(row, rate=rate, jacobian=jacobian, gamma=gamma))
+    return tuple(result)
 
 
 def _substitution(kinematics: Kinematics[Form], rates: tuple[Form, ...]) -> Callable[[Form], Form]:

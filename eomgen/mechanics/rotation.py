@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 import sympy as sp
 
 from eomgen.algebra.scalar import Algebra, S
-from eomgen.mechanics.vectors import Matrix, Vector, scale
+from eomgen.mechanics.vectors import Matrix, Vector, add, cross, dot, scale
+from eomgen.model import Quaternion, Turn
 
 
 def unit(algebra: Algebra[S], axis: tuple[sp.Expr, ...]) -> Vector[S]:
@@ -32,13 +34,39 @@ def about(algebra: Algebra[S], axis: Vector[S], angle: S) -> Matrix[S]:
         (axis[2], zero, -axis[0]),
         (-axis[1], axis[0], zero),
     )
-    return tuple(
-        tuple(
-            (c if i == j else zero) + (axis[i] * axis[j]) * (1 - c) + tilde[i][j] * s
-            for j in range(3)
-        )
-        for i in range(3)
+    rows = []
+    for i in range(3):
+        # e_i^2 + (1 - e_i^2) cos(a) is 1 or cos(a) where the axis is along x, y or z
+        square = axis[i] * axis[i]
+        row = [(axis[i] * axis[j]) * (1 - c) + tilde[i][j] * s for j in range(3)]
+        row[i] = square + (1 - square) * c
+        rows.append(tuple(row))
+    return tuple(rows)
+
+
+def of(algebra: Algebra[S], turn: Turn | Quaternion) -> Matrix[S]:
+    """The rotation matrix of a turn."""
+    if isinstance(turn, Quaternion):
+        return quaternion(algebra, [algebra.of(s) for s in turn.symbols])
+    return about(algebra, unit(algebra, turn.axis), algebra.of(turn.angle))
+
+
+def quaternion(algebra: Algebra[S], parts: Sequence[S]) -> Matrix[S]:
+    """R = 1 + 2 (e0 [v x] + [v x]^2) for the unit quaternion (e0, v)."""
+    e, x, y, z = parts
+    return (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - e * z), 2 * (x * z + e * y)),
+        (2 * (x * y + e * z), 1 - 2 * (x * x + z * z), 2 * (y * z - e * x)),
+        (2 * (x * z - e * y), 2 * (y * z + e * x), 1 - 2 * (x * x + y * y)),
     )
+
+
+def quaternion_rates(algebra: Algebra[S], parts: Sequence[S], spin: Vector[S]) -> tuple[S, ...]:
+    """e' = e (0, w) / 2 with the angular velocity w in the axes after the turn."""
+    e, v = parts[0], tuple(parts[1:])
+    half = Fraction(1, 2)
+    moving = add(scale(e, spin), cross(v, spin))
+    return (-(dot(v, spin) * half), *(c * half for c in moving))
 
 
 def identity(algebra: Algebra[S], size: int) -> Matrix[S]:

@@ -9,6 +9,7 @@ import sympy as sp
 
 from eomgen.algebra.scalar import Algebra, S
 from eomgen.errors import UsageError
+from eomgen.mechanics import motions
 from eomgen.mechanics.vectors import dot
 from eomgen.model import TIME, Model, Speed
 
@@ -21,6 +22,12 @@ def symbols(model: Model) -> tuple[sp.Symbol, ...]:
 def names(model: Model) -> tuple[str, ...]:
     """The names of the equations: speeds, or the coordinates where the spec declares none."""
     return tuple(s.name for s in model.speeds) or tuple(c.name for c in model.coordinates)
+
+
+def plain(model: Model) -> tuple[Speed, ...]:
+    """The speeds that are no angular velocity of a quaternion."""
+    own = {s for q in model.quaternions for s in q.speeds}
+    return tuple(s for s in model.speeds if s.symbol not in own)
 
 
 def spelled_out(model: Model, formula: sp.Expr) -> sp.Expr:
@@ -43,17 +50,28 @@ def rates(model: Model, algebra: Algebra[S]) -> tuple[S, ...]:
     """
     if not model.speeds:
         return tuple(algebra.of(c.rate) for c in model.coordinates)
-    rate_symbols = [c.rate for c in model.coordinates]
-    matrix = [[algebra.of(sp.diff(s.formula, r)) for r in rate_symbols] for s in model.speeds]
-    still = dict.fromkeys(rate_symbols, sp.S.Zero)
-    right = [algebra.of(s.symbol) - algebra.of(s.formula.xreplace(still)) for s in model.speeds]
-    solution: list[S] = [algebra.number(0)] * len(rate_symbols)
+    turned: dict[sp.Symbol, S] = {}
+    for q in model.quaternions:
+        spin = tuple(algebra.of(s) for s in q.speeds)
+        turned |= zip(q.rates, motions.rates(q, algebra, spin), strict=True)
+    rest = [c.rate for c in motions.plain(model)]
+    found = _solved(algebra, plain(model), rest)
+    everything = turned | dict(zip(rest, found, strict=True))
+    return tuple(everything[c.rate] for c in model.coordinates)
+
+
+def _solved(algebra: Algebra[S], speeds: Sequence[Speed], rates: Sequence[sp.Symbol]) -> list[S]:
+    """The rates that follow from the formulas of the speeds."""
+    matrix = [[algebra.of(sp.diff(s.formula, r)) for r in rates] for s in speeds]
+    still = dict.fromkeys(rates, sp.S.Zero)
+    right = [algebra.of(s.symbol) - algebra.of(s.formula.xreplace(still)) for s in speeds]
+    solution: list[S] = [algebra.number(0)] * len(rates)
     for rows, columns in blocks(algebra, matrix):
         block = [[matrix[i][j] for j in columns] for i in rows]
-        inverse = inverted(algebra, block, [model.speeds[i] for i in rows])
+        inverse = inverted(algebra, block, [speeds[i] for i in rows])
         for j, row in zip(columns, inverse, strict=True):
             solution[j] = dot(row, [right[i] for i in rows])
-    return tuple(solution)
+    return solution
 
 
 def blocks(algebra: Algebra[S], matrix: Sequence[Sequence[S]]) -> list[tuple[list[int], list[int]]]:

@@ -10,7 +10,7 @@ author gives as energies.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Generic
 
 import sympy as sp
@@ -19,7 +19,7 @@ from eomgen.algebra.scalar import S
 from eomgen.mechanics import efforts, speeds
 from eomgen.mechanics.equations import Equations
 from eomgen.mechanics.kinematics import Kinematics, Spin
-from eomgen.mechanics.vectors import Vector, add, cross, dot, scale, transform
+from eomgen.mechanics.vectors import Vector, add, cross, dot, scale, subtract, transform
 from eomgen.model import Body
 
 
@@ -29,62 +29,91 @@ class Momentum(Generic[S]):
 
     partials: tuple[Vector[S], ...]  # d velocity / d speed, one for each speed
     inertia: tuple[Vector[S], ...]  # inertia * partial, one for each speed
-    still: Vector[S]  # rate of momentum with u' = 0
+    still: Vector[S]  # rate of momentum, with u' = 0 unless the kinematics is accelerated
 
 
 def derive(kinematics: Kinematics[S]) -> Equations[S]:
     """M u' + h = Q by projection; the speeds are the spec's, or the rates."""
     unknown = speeds.symbols(kinematics.model)
-    momenta = [m for body in kinematics.model.bodies for m in _momenta(kinematics, body, unknown)]
-    if kinematics.model.energy.kinetic != 0:
-        momenta.append(_given(kinematics, unknown))
+    found = momenta(kinematics, unknown)
     size = range(len(unknown))
-    zero = kinematics.algebra.number(0)
-    matrix = [[zero] * len(unknown) for _ in size]
-    bias = [zero] * len(unknown)
-    for momentum in momenta:
+    matrix = [[kinematics.algebra.number(0)] * len(unknown) for _ in size]
+    for momentum in found:
         for i in size:
-            bias[i] = bias[i] + dot(momentum.partials[i], momentum.still)
             for j in range(i + 1):
                 matrix[i][j] = matrix[i][j] + dot(momentum.partials[i], momentum.inertia[j])
     rows = tuple(tuple(matrix[max(i, j)][min(i, j)] for j in size) for i in size)
-    return Equations(rows, tuple(bias), generalized_forces(kinematics, unknown))
+    bias = inertia_forces(kinematics, found, len(unknown))
+    return Equations(rows, bias, generalized_forces(kinematics, unknown))
 
 
-def _partials(
+def inverse_dynamics(kinematics: Kinematics[S], accelerations: Sequence[S]) -> tuple[S, ...]:
+    """M u' + h - Q for these u', a row for each speed; M is never formed."""
+    unknown = speeds.symbols(kinematics.model)
+    moving = accelerated(kinematics, accelerations)
+    inertia = inertia_forces(kinematics, momenta(moving, unknown), len(unknown))
+    return subtract(inertia, generalized_forces(kinematics, unknown))
+
+
+def accelerated(kinematics: Kinematics[S], accelerations: Sequence[S]) -> Kinematics[S]:
+    """The same kinematics with rates that know u', so that the rate of a velocity is whole."""
+    chosen = dict(zip(speeds.symbols(kinematics.model), accelerations, strict=True))
+    flow = replace(kinematics.flow, derivatives={**kinematics.flow.derivatives, **chosen})
+    return replace(kinematics, flow=flow)
+
+
+def momenta(kinematics: Kinematics[S], unknown: Sequence[sp.Symbol]) -> list[Momentum[S]]:
+    """The momenta of all bodies, and of the author's own kinetic energy."""
+    found = [m for body in kinematics.model.bodies for m in of_body(kinematics, body, unknown)]
+    if kinematics.model.energy.kinetic != 0:
+        found.append(of_formula(kinematics, unknown))
+    return found
+
+
+def inertia_forces(
+    kinematics: Kinematics[S], shares: Sequence[Momentum[S]], size: int
+) -> tuple[S, ...]:
+    """sum of the rates of momentum . d velocity / d u, for every speed."""
+    result = [kinematics.algebra.number(0)] * size
+    for momentum in shares:
+        for i in range(size):
+            result[i] = result[i] + dot(momentum.partials[i], momentum.still)
+    return tuple(result)
+
+
+def partials(
     kinematics: Kinematics[S], velocity: Vector[S], unknown: Sequence[sp.Symbol]
 ) -> tuple[Vector[S], ...]:
+    """d velocity / d u, a vector for each speed."""
     one = kinematics.algebra.number(1)
     return tuple(
         tuple(kinematics.algebra.along(v, {symbol: one}) for v in velocity) for symbol in unknown
     )
 
 
-def _momenta(
+def of_body(
     kinematics: Kinematics[S], body: Body, unknown: Sequence[sp.Symbol]
 ) -> list[Momentum[S]]:
+    """Linear momentum of a body, and angular momentum where it has inertia."""
     mass = kinematics.algebra.of(body.mass)
     velocity = kinematics.velocity(body.name)
-    partials = _partials(kinematics, velocity, unknown)
-    # with u' = 0 the rate of a velocity is its acceleration's part without u'
+    slopes = partials(kinematics, velocity, unknown)
     acceleration = tuple(kinematics.rate(v) for v in velocity)
-    result = [
-        Momentum(partials, tuple(scale(mass, p) for p in partials), scale(mass, acceleration))
-    ]
+    result = [Momentum(slopes, tuple(scale(mass, p) for p in slopes), scale(mass, acceleration))]
     spin = kinematics.spin(body)
     return result if spin is None else [*result, _angular(kinematics, spin, unknown)]
 
 
 def _angular(kinematics: Kinematics[S], spin: Spin[S], unknown: Sequence[sp.Symbol]) -> Momentum[S]:
     w = spin.angular_velocity
-    partials = _partials(kinematics, w, unknown)
+    slopes = partials(kinematics, w, unknown)
     still = transform(spin.inertia, tuple(kinematics.rate(c) for c in w))
     if spin.gyroscopic:
         still = add(still, cross(w, transform(spin.inertia, w)))
-    return Momentum(partials, tuple(transform(spin.inertia, p) for p in partials), still)
+    return Momentum(slopes, tuple(transform(spin.inertia, p) for p in slopes), still)
 
 
-def _given(kinematics: Kinematics[S], unknown: Sequence[sp.Symbol]) -> Momentum[S]:
+def of_formula(kinematics: Kinematics[S], unknown: Sequence[sp.Symbol]) -> Momentum[S]:
     """The author's own T(q, q', t): p = dT/dq' works on q', its rate less dT/dq is inertia."""
     coordinates, kinetic = kinematics.model.coordinates, kinematics.model.energy.kinetic
     rates = tuple(kinematics.flow.rates[c.symbol] for c in coordinates)
@@ -92,7 +121,7 @@ def _given(kinematics: Kinematics[S], unknown: Sequence[sp.Symbol]) -> Momentum[
     slopes = kinematics.vector(tuple(sp.diff(kinetic, c.symbol) for c in coordinates))
     still = tuple(kinematics.rate(p) - slope for p, slope in zip(momenta, slopes, strict=True))
     return Momentum(
-        _partials(kinematics, rates, unknown), _partials(kinematics, momenta, unknown), still
+        partials(kinematics, rates, unknown), partials(kinematics, momenta, unknown), still
     )
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from eomgen.errors import CheckError, UsageError
 from eomgen.numerics import cache
-from eomgen.program import Program
+from eomgen.program import Function, Program
 from eomgen.render.names import prefix
 
 COMPILERS = ("cc", "gcc", "clang")
@@ -37,29 +37,61 @@ class Compiled:
     def call(
         self, function: str, t: float, state: Sequence[float], *rest: Sequence[float]
     ) -> np.ndarray[Any, np.dtype[Any]]:
-        """The results of a function at one state; `rest`: inputs and parameters, in order.
+        """The results of a function at one state; `rest`: what it takes beside, in order.
 
         Raises CheckError where the mass matrix is singular.
         """
-        sizes = _sizes(self.program)
+        called = self.program.function(function)
+        sizes = _sizes(self.program, called)
         kind = REALS[self.real]
         given = [_vector(v, n, kind) for v, n in zip((state, *rest), sizes, strict=True)]
-        shape = self.program.function(function).shape
-        result = np.zeros(shape, kind)
+        result = np.zeros(called.shape, kind)
         symbol = self.library[f"{prefix(self.program.name)}_{function}"]
-        symbol.argtypes = [kind, *[ctypes.POINTER(kind)] * 4]
+        symbol.argtypes = [kind, *[ctypes.POINTER(kind)] * (len(given) + 1)]
         status = symbol(kind(t), *(_pointer(a, kind) for a in (*given, result)))
         if status == SINGULAR:
             raise CheckError(f"{function}: the mass matrix is singular at this state")
         return result
 
+    def model(self, parameters: Sequence[float]) -> Any:
+        """A prepared model: the memory of the struct that the functions `prepared_` read."""
+        kind = REALS[self.real]
+        prepared = self.program.prepare
+        constants = len(prepared.results) if prepared else 0
+        # a program without parameters has an int in their place
+        memory = (kind * (len(parameters) + constants + 1))()
+        given = _vector(parameters, len(self.program.parameters), kind)
+        self.library[f"{prefix(self.program.name)}_prepare"](_pointer(given, kind), memory)
+        return memory
 
-def _sizes(program: Program) -> tuple[int, int, int]:
-    return (
-        len(program.coordinates) + len(program.speeds),
-        len(program.inputs),
-        len(program.parameters),
-    )
+    def batch(
+        self, function: str, t: float, *columns: np.ndarray[Any, np.dtype[Any]], model: Any
+    ) -> tuple[np.ndarray[Any, np.dtype[Any]], int]:
+        """The results at many states, a column each, and the worst status.
+
+        columns: states, accelerations where they are taken, and inputs, (n, N); results
+        (size, N), NaN in the column of a state that fails. The code was written for a batch.
+        """
+        kind = REALS[self.real]
+        given = [np.ascontiguousarray(c, kind) for c in columns]
+        count = given[0].shape[1]
+        result = np.zeros((int(np.prod(self.program.function(function).shape)), count), kind)
+        symbol = self.library[f"{prefix(self.program.name)}_batch_{function}"]
+        symbol.argtypes = [ctypes.c_size_t, kind, *[ctypes.c_void_p] * (len(given) + 2)]
+        arrays = [_pointer(a, kind) for a in given]
+        status = symbol(count, kind(t), *arrays, model, _pointer(result, kind))
+        return result, status
+
+
+def _sizes(program: Program, function: Function) -> list[int]:
+    """The lengths of what a function takes behind the time."""
+    lengths = {
+        "state": len(program.coordinates) + len(program.speeds),
+        "accelerations": len(program.speeds),
+        "inputs": len(program.inputs),
+        "parameters": len(program.parameters),
+    }
+    return [lengths[argument] for argument in function.arguments[1:]]
 
 
 def _vector(values: Sequence[float], size: int, kind: Any) -> np.ndarray[Any, np.dtype[Any]]:

@@ -64,9 +64,7 @@ def admissible(steps: Steps, call: Call, t: float, state: Array) -> tuple[Array,
             bits |= UNPROJECTED
     if steps.has("project_rates"):
         state = np.concatenate([state[:size], call("project_rates")(t, state)])
-    if steps.projects_positions and not np.all(
-        np.abs(call("constraint_residuals")(t, state)) <= TOLERANCE
-    ):
+    if steps.residuals and not np.all(np.abs(call("constraint_residuals")(t, state)) <= TOLERANCE):
         bits |= RESIDUAL
     return state, bits if np.all(np.isfinite(state)) else NOT_FINITE
 

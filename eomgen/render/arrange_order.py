@@ -8,7 +8,8 @@ from enum import IntEnum
 
 import sympy as sp
 
-from eomgen.mechanics.equations import virtual_name
+from eomgen.mechanics import motions
+from eomgen.mechanics.equations import jump_name, virtual_name
 from eomgen.model import TIME, Coordinate, Model, Prescribed
 
 
@@ -57,8 +58,10 @@ def of_model(model: Model) -> Order:
     for kind, symbols in _declared(model):
         for place, symbol in enumerate(symbols):
             ranks[symbol.name] = (kind, (place,), 0)
+    for place, name in enumerate(motions.displacements(model)):
+        ranks[virtual_name(name)] = (Kind.VIRTUAL, (place,), 0)
     for place, coordinate in enumerate(model.coordinates):
-        ranks[virtual_name(coordinate.name)] = (Kind.VIRTUAL, (place,), 0)
+        ranks[jump_name(coordinate.name)] = (Kind.VIRTUAL, (place,), 0)
     own = {c.name: c.acceleration.name for c in model.coordinates}
     own |= {s.name: s.rate.name for s in model.speeds}
     return Order(ranks, frozenset(_nonzero(model)), own)

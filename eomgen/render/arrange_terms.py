@@ -67,6 +67,11 @@ class Factors:
         """What a factor is."""
         return self.ranks[factor][0]
 
+    def is_function(self, factor: int) -> bool:
+        """Whether a factor is a sine, a cosine or a tangent."""
+        shown = self.trees[factor]
+        return isinstance(shown, Function) and shown.name in ("sin", "cos", "tan")
+
     def tangent(self, sine: int) -> tuple[int, int] | None:
         """(cosine, tangent) of a sine's argument, if the factor is one whose cosine was met."""
         ripple = self.ripples.get(sine)
@@ -103,7 +108,7 @@ def flat(factors: Factors, form: Form) -> list[Term]:
     for monomial, waves in groups.items():
         parameters, motion, below = _monomial(factors, monomial)
         for powers, c in arrange_waves.shortest(waves, below, phases).items():
-            key, number = _with_waves(factors, (parameters, motion), powers, c)
+            key, number = _with_waves(factors, (parameters, motion), powers, Fraction(c))
             total[key] = total.get(key, Fraction(0)) + number
     return [Term(number, *key) for key, number in total.items() if number]
 

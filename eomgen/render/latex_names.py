@@ -9,9 +9,10 @@ import re
 import unicodedata
 from collections.abc import Iterator, Mapping
 
-from eomgen.mechanics.equations import virtual_name
+from eomgen.latex_name import GREEK, checked
+from eomgen.mechanics import motions
+from eomgen.mechanics.equations import jump_name, virtual_name
 from eomgen.model import Coordinate, Input, Model, Parameter, Prescribed
-from eomgen.render.latex_override import GREEK, checked
 
 LIKE_LATIN = {
     "omicron": "o", "Alpha": "A", "Beta": "B", "Epsilon": "E", "Zeta": "Z", "Eta": "H",
@@ -89,6 +90,12 @@ def table(model: Model) -> Mapping[str, str]:
         names[symbol] = dotted(spelling, dots)
     for c in model.coordinates:
         names[virtual_name(c.name)] = rf"\delta {names[c.symbol.name]}"
+        names[jump_name(c.name)] = rf"\Delta {names[c.rate.name]}"
+    for q in model.quaternions:
+        for i, axis in enumerate(motions.AXES):
+            name = motions.turn_name(q, i)
+            names[name] = rf"\pi_{{{spelled(q.name)},{axis}}}"
+            names[virtual_name(name)] = rf"\delta {names[name]}"
     return names
 
 
@@ -104,6 +111,8 @@ def _symbols(model: Model) -> Iterator[tuple[str, str, int]]:
         yield place.rate.name, spelling, 1
         yield place.acceleration.name, spelling, 2
     for speed in model.speeds:
+        if speed.symbol == speed.formula:
+            continue  # a rate, which is spelled above
         spelling = of_record(speed.name, speed.description.latex)
         yield speed.symbol.name, spelling, 0
         yield speed.rate.name, spelling, 1

@@ -32,7 +32,14 @@ def style(model: Model) -> Style:
         index=lambda letter, *of: f"{letter}_{{{','.join(_index(n) for n in of)}}}",
         sub=lambda letter, symbol: f"{letter}_{{{symbol}}}",
         dotted=lambda name: latex_names.dotted(name, 1),
+        accelerated=lambda name: latex_names.dotted(name, 2),
+        after=lambda rate: f"{{{rate}}}^+",
+        before=lambda rate: f"{{{rate}}}^-",
+        size=lambda name: rf"\left|{name}\right|",
+        sign=lambda name: rf"\operatorname{{sgn}}({name})",
+        fraction=lambda above, below: rf"\frac{{{above}}}{{{below}}}",
         partial=lambda what, by: rf"\frac{{\partial {what}}}{{\partial {by}}}",
+        gyroscopic=gyroscopic,
         rate=lambda what: rf"\frac{{d}}{{dt}} {bracketed(what)}",
         display=display,
         pairs=pairs,
@@ -57,6 +64,12 @@ def _index(name: str) -> str:
         return latex_names.spelled(name)
     words = (escaped(part) for part in re.split(r"[\s_]+", name))
     return rf"\mathrm{{{BLANK.join(words)}}}"
+
+
+def gyroscopic(name: str, axis: str) -> str:
+    """The component of w x dL/dw about an axis of the turned frame."""
+    omega = rf"\boldsymbol{{\omega}}_{{{latex_names.spelled(name)}}}"
+    return rf"\left({omega} \times \frac{{\partial L}}{{\partial {omega}}}\right)_{{{axis}}}"
 
 
 def display(rows: Rows) -> str:

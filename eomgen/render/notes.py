@@ -9,26 +9,32 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from eomgen.algebra import normal
+from eomgen.algebra.closed import ClosedForm
 from eomgen.algebra.normal import Form
-from eomgen.mechanics.equations import Contribution, Derivation, Equation, LagrangeRow
-from eomgen.model import AXES, SPACES, Coordinate
+from eomgen.mechanics import motions
+from eomgen.mechanics.contact_forms import ContactForms
+from eomgen.mechanics.equations import Contribution, Derivation, LagrangeRow
+from eomgen.mechanics.free_bodies import FreeBodies
+from eomgen.mechanics.motions import Motion
+from eomgen.mechanics.principles import Worked
+from eomgen.model import AXES, SPACES, Quaternion
 from eomgen.render import (
     arrange,
-    arrange_equation,
     latex_style,
+    notes_contacts,
     notes_data,
+    notes_equation,
     notes_links_names,
     notes_links_page,
     notes_matrix,
+    notes_principles,
+    notes_reactions,
     text_style,
     tree,
     words,
 )
-from eomgen.render.arrange_equation import RIGHT
 from eomgen.render.notes_links import Links
 from eomgen.render.notes_page import (
-    ENOUGH,
-    LARGEST,
     How,
     Page,
     arranged,
@@ -40,7 +46,6 @@ from eomgen.render.style import Style
 from eomgen.render.tree import Tree
 
 REPEATED = 60  # terms of a Lagrangian that is written out below T and V
-PARTS = ("inertia", "damping", "elastic", "gravity", "other", *RIGHT)
 
 
 @dataclass(frozen=True)
@@ -52,6 +57,9 @@ class Notes:
     check: str = ""
     steps: bool = False  # whether the text shows the partial derivatives; LaTeX always does
     links: Links | None = None  # what is known of the constraints
+    worked: Worked | None = None  # the formalism that was asked for, where it is not as ever
+    free: FreeBodies | None = None  # what holds the bodies, where it is shown
+    contacts: tuple[ContactForms, ...] = ()
 
     @property
     def name(self) -> str:
@@ -72,6 +80,8 @@ def text_context(notes: Notes) -> dict[str, object]:
 def context(notes: Notes, style: Style) -> dict[str, object]:
     """Every formula of the notes, spelled."""
     names = notes_links_names.aliases(notes.derivation)
+    names = {**names, **notes_principles.aliases(notes.derivation, notes.worked, notes.free)}
+    names = {**names, **notes_contacts.aliases(notes.derivation, notes.contacts)}
     style = notes_links_names.with_multipliers(style, names)
     page = Page(notes.derivation, notes.language, style)
     model = notes.derivation.model
@@ -87,14 +97,18 @@ def context(notes: Notes, style: Style) -> dict[str, object]:
         **_places(page),
         **_energies(page),
         **_forces(page),
-        "steps": tuple(_step(page, c, r) for c, r in _by_coordinate(page)),
+        "steps": tuple(_step(page, m, r) for m, r in _by_motion(page)),
         **_equations(page),
         "matrix": notes_matrix.matrix(page),
+        "contacts": tuple(notes_contacts.contact(page, c) for c in notes.contacts),
+        **notes_reactions.tables(page, notes.free),
+        **notes_principles.tables(page, notes.worked),
     }
 
 
-def _by_coordinate(page: Page) -> Iterator[tuple[Coordinate, LagrangeRow]]:
-    return zip(page.derivation.model.coordinates, page.derivation.rows, strict=True)
+def _by_motion(page: Page) -> Iterator[tuple[Motion[Form], LagrangeRow]]:
+    moving = motions.of(page.derivation.model, ClosedForm())
+    return zip(moving, page.derivation.rows, strict=True)
 
 
 def _places(page: Page) -> dict[str, object]:
@@ -187,17 +201,17 @@ def _forces(page: Page) -> dict[str, object]:
     ring = d.kinetic_energy.ring
     work = normal.total(ring, (share.value for share in d.virtual_work))
     rows = [
-        (style.sub("Q", style.symbol(c.symbol.name)), formula(page, arrange.loads, row.force))
-        for c, row in _by_coordinate(page)
+        (style.sub("Q", style.symbol(m.displacement)), formula(page, arrange.loads, row.force))
+        for m, row in _by_motion(page)
     ]
     total = (style.symbol("delta W"), formula(page, arrange.work, work))
     return {"forces": style.display([total, *rows]) if work.terms else ""}
 
 
-def _step(page: Page, coordinate: Coordinate, row: LagrangeRow) -> dict[str, str]:
-    """The partial derivatives of one coordinate."""
-    style, own = page.style, coordinate.acceleration.name
-    q, rate = style.symbol(coordinate.symbol.name), style.symbol(coordinate.rate.name)
+def _step(page: Page, motion: Motion[Form], row: LagrangeRow) -> dict[str, str]:
+    """The partial derivatives of one motion."""
+    style, own = page.style, motion.acceleration.name
+    q, rate = style.symbol(motion.displacement), style.symbol(motion.rate.name)
     momentum = style.partial("L", rate)
 
     def moving(form: Form) -> str:
@@ -208,40 +222,43 @@ def _step(page: Page, coordinate: Coordinate, row: LagrangeRow) -> dict[str, str
         (style.rate(momentum), moving(row.momentum_rate)),
         (style.partial("L", q), moving(row.slope)),
     ]
+    if row.gyroscopic is not None and motion.turn is not None:
+        rows.append((style.gyroscopic(*_turn(motion.turn)), moving(row.gyroscopic)))
     if page.derivation.dissipation:
         rows.append((style.partial("D", rate), moving(row.dissipation)))
     if row.force.terms:
         rows.append((style.sub("Q", q), formula(page, arrange.loads, row.force)))
-    return {"symbol": style.inline(q), "rows": style.display(rows)}
+    said = page.words["steps_for" if motion.turn is None else "steps_turn"]
+    return {"said": said, "symbol": style.inline(q), "rows": style.display(rows)}
+
+
+def _turns_said(page: Page) -> str:
+    """What the virtual turn about an axis is, where there are quaternions."""
+    if not page.derivation.model.quaternions:
+        return ""
+    name = motions.turn_name(page.derivation.model.quaternions[0], 0)
+    return page.words["turns"].format(math=page.style.inline(page.style.symbol(name)))
+
+
+def _turn(turn: tuple[Quaternion, int]) -> tuple[str, str]:
+    """The name of a quaternion and of one of its axes."""
+    return turn[0].name, AXES[turn[1]]
 
 
 def _equations(page: Page) -> dict[str, object]:
     """The equations of motion, in the speeds where the spec has some."""
     d, style = page.derivation, page.style
     speeds = d.model.speeds
-    rates = zip((style.symbol(c.rate.name) for c in d.model.coordinates), d.rates, strict=False)
+    trivial = {s.symbol for s in speeds if s.symbol == s.formula}
+    rates = [
+        (style.symbol(c.rate.name), rate)
+        for c, rate in zip(d.model.coordinates, d.rates, strict=bool(d.rates))
+        if c.rate not in trivial
+    ]
     return {
         "rates": style.display([(q, formula(page, arrange.motion, r)) for q, r in rates]),
-        "equations": tuple(_equation(page, e) for e in d.equations),
+        "equations": tuple(notes_equation.shown(page, e) for e in d.equations),
         "in_speeds": bool(speeds),
+        "turns": _turns_said(page),
         "constraint_equations": notes_links_page.equations(page),
     }
-
-
-def _readable(found: Tree) -> Tree | int:
-    """The tree, or its size where nobody would read it."""
-    size = tree.size(found)
-    return size if size > LARGEST else found
-
-
-def _equation(page: Page, row: Equation) -> dict[str, str]:
-    """One equation, and the words before it: what it was divided by."""
-    style = page.style
-    count = sum(len(form.terms) for part in PARTS if (form := getattr(row, part)))
-    if count > ENOUGH:
-        return {"body": style.equation(spelled(page, count), "0"), "said": page.words["equation"]}
-    found = arrange_equation.equation(page.arranger, row)
-    left, right = (spelled(page, _readable(side)) for side in (found.left, found.right))
-    divisor = "" if found.divisor == tree.ONE else style.inline(style.formula(found.divisor))
-    said = page.words["divided"].format(divisor=divisor) if divisor else page.words["equation"]
-    return {"body": style.equation(left, right), "said": said}

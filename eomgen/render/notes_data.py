@@ -80,7 +80,7 @@ def tables(page: Page) -> dict[str, Any]:
     return {
         "parameters": tuple(parameter(page, p) for p in model.parameters),
         "coordinates": tuple(coordinate(page, c) for c in model.coordinates),
-        "speeds": tuple(motion(page, s) for s in model.speeds),
+        "speeds": tuple(motion(page, s) for s in model.speeds if s.symbol != s.formula),
         "prescribed": tuple(motion(page, p) for p in model.prescribed),
         "inputs": tuple(coordinate(page, i) for i in model.inputs),
     }

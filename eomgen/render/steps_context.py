@@ -48,7 +48,6 @@ class MethodText:
 def c(steps: Steps) -> dict[str, object]:
     """The names of the C templates of integrators."""
     kinds = {m.kind for m in steps.methods}
-    residuals = _shape(steps, "constraint_residuals")
     return {
         "name": steps.name,
         "prefix": prefix(steps.name),
@@ -63,16 +62,11 @@ def c(steps: Steps) -> dict[str, object]:
         "projects_positions": steps.projects_positions,
         "projects_rates": steps.has("project_rates"),
         "guarded": steps.has("constraint_margin"),
-        "residuals": residuals,
+        "residuals": steps.residuals,
         "implicit": bool(kinds & {"rosenbrock", "midpoint"}),
         "newton": "midpoint" in kinds,
         "iterations": MIDPOINT_ITERATIONS,
     }
-
-
-def _shape(steps: Steps, name: str) -> int:
-    """The length of the result of a function; 0 where there is none."""
-    return next((f.shape[0] for f in steps.program.functions if f.name == name), 0)
 
 
 def _text(steps: Steps, method: Method) -> MethodText:

@@ -93,7 +93,7 @@ def words(steps: Steps, method: Method) -> int:
     n = steps.size
     functions = {f.name: f for f in steps.program.functions}
     below = max(map(_named, (functions[name] for name in steps.calls(method))), default=0)
-    ending = n * (2 + steps.compensated) + _residuals(steps)
+    ending = n * (2 + steps.compensated) + steps.residuals
     return ARRAYS[method.kind](steps, method) + ending + below
 
 
@@ -111,8 +111,3 @@ ARRAYS: dict[str, Callable[[Steps, Method], int]] = {
     "rosenbrock": lambda steps, method: steps.size * (steps.size + 4),
     "midpoint": lambda steps, method: steps.size * (steps.size + 6),
 }
-
-
-def _residuals(steps: Steps) -> int:
-    found = (f for f in steps.program.functions if f.name == "constraint_residuals")
-    return next((f.shape[0] for f in found), 0)

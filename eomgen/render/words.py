@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from eomgen.errors import UsageError
+from eomgen.render import words_contacts, words_principles
 
 WORDS: Mapping[str, Mapping[str, str]] = {
     "en": {
@@ -68,6 +69,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "no_basis": "No virtual displacement is possible.",
         "coordinates_linked": "The set of coordinates is linked: their number, {count}, is greater"
         " than that of the degrees of freedom, {freedom}.",
+        "coordinates_turns": "The {count} coordinates hold quaternions, each of length one, whose"
+        " parts are not independent: there are {freedom} degrees of freedom.",
         "coordinates_independent": "The coordinates are independent of each other, and yet their"
         " number, {count}, is greater than that of the degrees of freedom, {freedom}.",
         "first_kind": "Lagrange's equations of the first kind",
@@ -78,8 +81,14 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "flight": "These are the equations of flight. In contact, each closed gap adds its"
         " multiplier, times the coefficient of the virtual displacement in its virtual form, to the"
         " generalized force.",
+        "rough": "These are the equations without friction. In each mode it adds its generalized"
+        " force: while a constraint sticks, what keeps the touching point at rest, smaller than the"
+        " coefficient times the normal force; while it slides, the coefficient times the normal"
+        " force, against the slip.",
         "speeds": "The speeds are",
         "rates": "so that the rates are",
+        "turns": "There is no coordinate {math}: it stands for a virtual turn about an axis of the"
+        " turned frame, along which the parts of the quaternion change as they do with the rates.",
         "prescribed": "Prescribed motions",
         "inputs": "Inputs",
         "kinematics": "Positions and velocities",
@@ -94,6 +103,7 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "no_forces": "No other force does virtual work: {math} for every coordinate.",
         "steps": "Lagrange's equations",
         "steps_for": "Coordinate",
+        "steps_turn": "Virtual turn",
         "equation": "The equation of motion is",
         "divided": "Divided by {divisor}, the equation of motion is",
         "equations": "Equations of motion",
@@ -167,6 +177,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "no_basis": "Ningún desplazamiento virtual es posible.",
         "coordinates_linked": "El conjunto de coordenadas es ligado: su número, {count}, es mayor"
         " que el de grados de libertad, {freedom}.",
+        "coordinates_turns": "Las {count} coordenadas contienen cuaterniones de longitud uno, cuyas"
+        " partes no son independientes: hay {freedom} grados de libertad.",
         "coordinates_independent": "Las coordenadas son independientes entre sí y, aun así, su"
         " número, {count}, es mayor que el de grados de libertad, {freedom}.",
         "first_kind": "Ecuaciones de Lagrange de primera especie",
@@ -177,8 +189,14 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "flight": "Estas son las ecuaciones en vuelo. En contacto, cada holgura cerrada suma a la"
         " fuerza generalizada su multiplicador por el coeficiente del desplazamiento virtual en su"
         " forma virtual.",
+        "rough": "Estas son las ecuaciones sin rozamiento. En cada modo este suma su fuerza"
+        " generalizada: mientras una ligadura se adhiere, la que mantiene en reposo el punto de"
+        " contacto, menor que el coeficiente por la fuerza normal; mientras desliza, el coeficiente"
+        " por la fuerza normal, contra el deslizamiento.",
         "speeds": "Las velocidades generalizadas son",
         "rates": "de modo que",
+        "turns": "No hay una coordenada {math}: designa un giro virtual alrededor de un eje del"
+        " sistema girado; las partes del cuaternión varían con él como con las velocidades.",
         "prescribed": "Movimientos prescritos",
         "inputs": "Entradas",
         "kinematics": "Posiciones y velocidades",
@@ -193,6 +211,7 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "no_forces": "Ninguna otra fuerza realiza trabajo virtual: {math} para cada coordenada.",
         "steps": "Ecuaciones de Lagrange",
         "steps_for": "Coordenada",
+        "steps_turn": "Giro virtual",
         "equation": "La ecuación del movimiento es",
         "divided": "Dividida por {divisor}, la ecuación del movimiento es",
         "equations": "Ecuaciones del movimiento",
@@ -211,7 +230,7 @@ def of(language: str) -> Mapping[str, str]:
     """The words of a language. Raises UsageError where there is none."""
     if language not in WORDS:
         raise UsageError(f"no notes in {language!r}: choose {' or '.join(WORDS)}")
-    return WORDS[language]
+    return {**WORDS[language], **words_principles.WORDS[language], **words_contacts.WORDS[language]}
 
 
 def title(titles: Mapping[str, str], language: str) -> str:

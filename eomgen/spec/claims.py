@@ -2,8 +2,9 @@
 
 import sympy as sp
 
-from eomgen.dimension import ENERGY, NONE, Dimension
-from eomgen.model import Claim, Expectation, Output
+from eomgen.dimension import ENERGY, NONE, TIME, Dimension
+from eomgen.model import Claim, Expectation, Output, Simulation
+from eomgen.spec import quaternions
 from eomgen.spec.formulas import (
     constant,
     description,
@@ -29,7 +30,11 @@ def initial(entries: tuple[Entry, ...], scene: Scene, noun: str = "initial value
     """`q` and `q'` -> exact SI value; the guess, which is a map, is left out."""
     known = [e for e in entries if isinstance(e.value, Scalar)]
     found = {e.key.text: scene.ledger.attempt(_initial, e, scene, noun) for e in known}
-    return {name: value for name, value in found.items() if value is not None}
+    values = {name: value for name, value in found.items() if value is not None}
+    for entry in entries:
+        if isinstance(entry.value, Sequence):
+            values |= scene.ledger.attempt(quaternions.initial, entry, scene) or {}
+    return quaternions.with_rates(scene, values)
 
 
 def guess(entries: tuple[Entry, ...], scene: Scene) -> Values:
@@ -60,6 +65,9 @@ def _coordinate(key: Scalar, scene: Scene, most: int = 0) -> Name:
     name = key.text.rstrip("'")
     order = len(key.text) - len(name)
     known = scene.names.get(name)
+    spins = [s.name for q in quaternions.found(scene) for s in q.speeds] if most else []
+    if name in spins and not order:
+        return Name(name, 0, Span(key.line, key.column, key.text))
     if known is None or known.kind != "coordinate" or order > most:
         fitting = [n for n, k in scene.names.items() if k.kind == "coordinate"]
         noun = "coordinate or rate" if most else "coordinate"
@@ -107,6 +115,25 @@ def _output(entry: Entry, scene: Scene) -> Output:
     formula = scalar(node, scene, Wanted("output", f"output '{name}'", NONE, by))
     scene.names[name] = known
     return Output(name, formula, description(entry.value, text_of(unit_node), known))
+
+
+def simulation(node: Node | None, scene: Scene) -> Simulation:
+    """The method, step and formulation that the author wants."""
+    if not isinstance(node, Mapping):
+        return Simulation()
+    step = field(node, "step")
+    return Simulation(
+        text_of(node.get("method")) or None,
+        None if step is None else scene.ledger.attempt(_step, step, scene),
+        text_of(node.get("formulation")) or None,
+    )
+
+
+def _step(node: Scalar, scene: Scene) -> sp.Expr:
+    value = constant(node, scene, Wanted("initial value", "the step", TIME))
+    if value.is_positive is not True:
+        raise Mistake(node, "E508", "a step must be positive")
+    return value
 
 
 def expectation(node: Node | None, scene: Scene) -> Expectation:

@@ -10,7 +10,7 @@ from typing import Any
 import sympy as sp
 
 from eomgen.dimension import Dimension
-from eomgen.model import Model
+from eomgen.model import Drive, Force, Model
 from eomgen.spec import (
     claims,
     constants,
@@ -22,6 +22,7 @@ from eomgen.spec import (
     movers,
     names,
     places,
+    quaternions,
     roles,
 )
 from eomgen.spec.formula import NAME
@@ -69,6 +70,12 @@ def _model(whole: Mapping, root: Mapping, ledger: Ledger) -> Model:
         prescribed=motion.prescribed(_entries(root, "prescribed", scene), scene),
         speeds=motion.speeds(_entries(root, "speeds", scene), scene),
     )
+    pushes = loads.each(root.get("forces"), "force", loads.force, scene)
+    known = replace(
+        known,
+        speeds=quaternions.speeds(scene, known.coordinates, known.speeds),
+        quaternions=quaternions.found(scene),
+    )
     known = replace(
         known,
         gravity=_gravity(whole, root, scene),
@@ -76,7 +83,8 @@ def _model(whole: Mapping, root: Mapping, ledger: Ledger) -> Model:
         bodies=places.bodies(_entries(root, "bodies", scene), scene),
         springs=loads.each(root.get("springs"), "spring", loads.spring, scene),
         dampers=loads.each(root.get("dampers"), "damper", loads.damper, scene),
-        forces=loads.each(root.get("forces"), "force", loads.force, scene),
+        forces=tuple(p for p in pushes if isinstance(p, Force)),
+        drives=tuple(p for p in pushes if isinstance(p, Drive)),
         moments=loads.each(root.get("moments"), "moment", loads.moment, scene),
         energy=loads.energy(root.get("energy"), scene),
     )
@@ -88,6 +96,7 @@ def _model(whole: Mapping, root: Mapping, ledger: Ledger) -> Model:
         guess=claims.guess(_table(root, "initial"), scene),
         range=claims.ranges(_table(root, "range"), scene),
         outputs=claims.outputs(_table(root, "outputs"), scene),
+        simulation=claims.simulation(root.get("simulate"), scene),
         expect=claims.expectation(root.get("expect"), scene),
         with_units=scene.units_seen,
     )
@@ -113,9 +122,13 @@ def _described(known: Model, found: Map[str, Dimension | None]) -> Model:
 
     def described(records: tuple[Any, ...]) -> tuple[Any, ...]:
         return tuple(
-            replace(r, description=replace(r.description, dimension=found.get(r.name)))
-            for r in records
+            replace(r, description=replace(r.description, dimension=dimension(r))) for r in records
         )
+
+    def dimension(record: Any) -> Dimension | None:
+        # the rate of a coordinate that serves as a speed has no name of its own in the file
+        own = record.description.dimension if found else None
+        return found.get(record.name, own)
 
     return replace(
         known,

@@ -6,7 +6,7 @@ import sympy as sp
 
 from eomgen.dimension import LENGTH, MASS
 from eomgen.spec.formulas import scalar, tree_of, value_of
-from eomgen.spec.ledger import Mistake
+from eomgen.spec.ledger import Mistake, Spot
 from eomgen.spec.reader import Node, Sequence
 from eomgen.spec.scope import Scene, Wanted
 
@@ -28,7 +28,7 @@ def inertia(name: str, node: Node, scene: Scene) -> tuple[sp.Expr, ...]:
     if len(entries) == 9:
         _check_symmetric(entries, node, what)
     if all(value is not None for value in values):
-        _check_possible([v for v in values if v is not None], node, what)
+        check_possible([v for v in values if v is not None], node, what)
     return tuple(entries)
 
 
@@ -54,10 +54,10 @@ def _check_symmetric(entries: list[sp.Expr], node: Node, what: str) -> None:
             raise Mistake(node, "E505", message)
 
 
-def _check_possible(values: list[sp.Expr], node: Node, what: str) -> None:
-    """No negative inertia; tr(J)/2 - J, the second moments of the mass, is semidefinite."""
+def check_possible(values: list[sp.Expr], spot: Spot, what: str) -> None:
+    """Raise `Mistake` unless tr(J)/2 - J, the second moments of the mass, is semidefinite."""
     if any(values[i].is_negative for i in range(0, len(values), 4)):
-        raise Mistake(node, "E504", f"{what} is negative")
+        raise Mistake(spot, "E504", f"{what} is negative")
     if len(values) == 1:
         return
     tensor = sp.Matrix(3, 3, values)
@@ -69,4 +69,4 @@ def _check_possible(values: list[sp.Expr], node: Node, what: str) -> None:
     )
     if any(minor.is_negative for minor in minors):
         message = f"{what} belongs to no body: one principal value exceeds the sum of the others"
-        raise Mistake(node, "E505", message)
+        raise Mistake(spot, "E505", message)

@@ -65,7 +65,12 @@ BOOLEAN, INTEGER = Leaf("boolean"), Leaf("integer")
 VECTOR = Either((FORMULA, Items(FORMULA, least=1)))
 PAIR = Items(NAME, least=2, most=2)
 TENSOR = Either((FORMULA, Items(VECTOR, least=1)))
-TURNS = Items(Items(VECTOR, least=2, most=2), least=1)
+QUATERNION = Record({"quaternion": Key("a coordinate declared as `quaternion`", NAME, True)})
+ROTATIONS = (
+    "rotations, body-fixed, left to right: [[z, psi], [x, theta]], or {quaternion: e} among them"
+)
+TURN = Either((Items(VECTOR, least=2, most=2), QUATERNION))
+TURNS = Either((Items(TURN, least=1), QUATERNION))
 
 LATEX = Key("LaTeX of the symbol, instead of what its spelling gives", TEXT)
 ABOUT = Key("one line for people", TEXT)
@@ -116,7 +121,7 @@ FRAME = Record(
         "on": Key("the body that carries this frame; the world if absent", NAME),
         "at": Key("origin, in the axes of `on`; its origin if absent", VECTOR),
         "angle": Key("rotation in the plane", FORMULA),
-        "turn": Key("rotations, body-fixed, left to right: [[z, psi], [x, theta]]", TURNS),
+        "turn": Key(ROTATIONS, TURNS),
     }
 )
 
@@ -125,7 +130,7 @@ BODY = Record(
         "mass": Key("mass", FORMULA, required=True),
         "at": Key("position of the mass centre", VECTOR),
         "angle": Key("rotation in the plane", FORMULA),
-        "turn": Key("rotations, body-fixed, left to right: [[z, psi], [x, theta]]", TURNS),
+        "turn": Key(ROTATIONS, TURNS),
         "inertia": Key(
             "about the mass centre, in body axes: a number in the plane; [a, b, c], "
             "[Ixx, Iyy, Izz, Ixy, Ixz, Iyz] or three rows in solid space",
@@ -163,9 +168,10 @@ DAMPER = Record(
 
 FORCE = Record(
     {
-        "on": Key("point or body that the force acts on", NAME, required=True),
+        "on": Key("point or body that the force acts on", NAME),
         "from": Key("point or body that takes the reaction", NAME),
-        "force": Key("components", VECTOR, required=True),
+        "along": Key("instead of `on`: a formula in the coordinates that it increases", FORMULA),
+        "force": Key("components; along a formula a scalar", VECTOR, required=True),
         "in": Key("world (default) or the body whose axes the components are in", NAME),
     }
 )
@@ -191,7 +197,9 @@ CONSTRAINT = Record(
         "restitution": Key(
             "of a unilateral one: rebound over approach speed, from 0 to 1", FORMULA
         ),
-        "friction": Key("of a unilateral one: Coulomb's coefficient, not negative", FORMULA),
+        "friction": Key(
+            "of a surface, unilateral or holonomic: Coulomb's coefficient, not negative", FORMULA
+        ),
         "latex": LATEX,
         "about": ABOUT,
     }
@@ -200,7 +208,23 @@ CONSTRAINT = Record(
 EQUATIONS = Either((RELATION, Items(RELATION), Table(RELATION)))
 GUESS = "beside constraints: about where coordinates and rates are that the constraints decide"
 INITIAL = {"guess": Key(GUESS, Table(QUANTITY))}
+INITIAL_VALUE = Either((QUANTITY, Items(QUANTITY, least=4, most=4)))  # four of a quaternion
 EQUILIBRIUM = Either((Table(QUANTITY), Items(Table(QUANTITY))))
+
+METHODS = (
+    "semi-euler", "verlet", "rk4", "dopri5", "rosenbrock2", "midpoint",
+    "dop853", "lsoda", "radau", "cvode",
+)  # fmt: skip
+FORMULATIONS = ("minimal", "nullspace", "multiplier")
+SIMULATION = Record(
+    {
+        "method": Key("the integrator", Leaf("choice", METHODS)),
+        "step": Key("of a method with fixed steps", QUANTITY),
+        "formulation": Key(
+            "of the equations; a free scene has `minimal`", Leaf("choice", FORMULATIONS)
+        ),
+    }
+)
 
 LANGUAGE = Record(
     {
@@ -259,11 +283,12 @@ LANGUAGE = Record(
                 }
             ),
         ),
-        "initial": Key("initial values of coordinates and rates", Table(QUANTITY, INITIAL)),
+        "initial": Key("initial values of coordinates and rates", Table(INITIAL_VALUE, INITIAL)),
         "range": Key(
             "the region in which the scene moves", Table(Items(QUANTITY, least=2, most=2))
         ),
         "outputs": Key("named formulas", Table(_described("formula", "the formula"))),
+        "simulate": Key("how `eomgen simulate` runs it, unless told otherwise", SIMULATION),
         "expect": Key(
             "the author's claims, checked",
             Record(

@@ -6,7 +6,7 @@ from typing import TypeVar
 import sympy as sp
 
 from eomgen.dimension import ENERGY, FORCE, LENGTH, NONE, TIME, Dimension
-from eomgen.model import Damper, Energy, Force, Moment, Spring
+from eomgen.model import Damper, Drive, Energy, Force, Moment, Spring
 from eomgen.spec.formulas import scalar, tree_of, vector
 from eomgen.spec.ledger import CONSEQUENCE, Mistake
 from eomgen.spec.names import WORLD
@@ -95,12 +95,17 @@ def _path(
     """The two ends, or the formula of the elongation and its tree."""
     if only(name, keys, ("between", "along")) == "between":
         return pair(node_of(keys, "between"), scene), None, ()
+    return None, *_along(name, keys, scene)
+
+
+def _along(name: str, keys: Mapping, scene: Scene) -> tuple[sp.Expr, By]:
+    """The formula that a load acts along, and its tree."""
     node = node_of(keys, "along")
     formula = scalar(node, scene, Wanted("elongation", f"the elongation of {name}"))
     tree = tree_of(node, scene)
     if all(scene.names[n.name].kind != "coordinate" for n in names(tree)):
         raise Mistake(node, "E510", f"'{tree.span.text}' moves with no coordinate")
-    return None, formula, ((tree, 1),)
+    return formula, ((tree, 1),)
 
 
 def _free_length(name: str, keys: Mapping, wanted: Wanted, scene: Scene) -> sp.Expr:
@@ -134,11 +139,25 @@ def node_of(keys: Mapping, name: str) -> Node:
     return found
 
 
-def force(name: str, keys: Mapping, scene: Scene) -> Force:
-    """A force on a point."""
+def force(name: str, keys: Mapping, scene: Scene) -> Force | Drive:
+    """A force on a point, or along a formula."""
+    if only(name, keys, ("on", "along")) == "along":
+        return _drive(name, keys, scene)
     on, source = _ends(keys, place_name, scene)
     found = vector(node_of(keys, "force"), scene, Wanted("force", name, FORCE))
     return Force(name, on, found.components, source, _axes(keys, scene))
+
+
+def _drive(name: str, keys: Mapping, scene: Scene) -> Drive:
+    """A force along a formula: force times its rate is a power."""
+    astray = next((e.key for e in keys.entries if e.key.text in ("from", "in")), None)
+    if astray is not None:
+        raise Mistake(astray, "E112", f"'{astray.text}' does not go with 'along'")
+    along, by = _along(name, keys, scene)
+    energy, reach = _pairing(by)
+    inverse = tuple((tree, -power) for tree, power in by)
+    wanted = Wanted("force", name, energy / reach, inverse)
+    return Drive(name, along, scalar(node_of(keys, "force"), scene, wanted))
 
 
 def moment(name: str, keys: Mapping, scene: Scene) -> Moment:

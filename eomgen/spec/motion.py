@@ -7,6 +7,7 @@ import sympy as sp
 from eomgen.dimension import NONE
 from eomgen.model import TIME as T
 from eomgen.model import Coordinate, Description, Input, Prescribed, Speed
+from eomgen.spec import quaternions
 from eomgen.spec.formulas import description, field, scalar_tree, text_of, tree_of, unit_of
 from eomgen.spec.ledger import Mistake
 from eomgen.spec.reader import Entry, Mapping, Node, Scalar
@@ -16,8 +17,13 @@ from eomgen.spec.syntax import Call, Name, Number, Power, Product, Quantity, Sum
 
 def coordinates(entries: tuple[Entry, ...], scene: Scene) -> tuple[Coordinate, ...]:
     """All coordinates, in the order of the file."""
-    found = [scene.ledger.attempt(_coordinate, entry, scene) for entry in entries]
-    return tuple(c for c in found if c is not None)
+    result: list[Coordinate] = []
+    for entry in entries:
+        if scene.names[entry.key.text].kind == quaternions.WORD:
+            result += quaternions.coordinates(entry, scene)
+        elif (found := scene.ledger.attempt(_coordinate, entry, scene)) is not None:
+            result.append(found)
+    return tuple(result)
 
 
 def _coordinate(entry: Entry, scene: Scene) -> Coordinate:
@@ -73,6 +79,7 @@ def speeds(entries: tuple[Entry, ...], scene: Scene) -> tuple[Speed, ...]:
     found = [scene.ledger.attempt(_speed, entry, scene) for entry in entries]
     kept = tuple(s for s in found if s is not None)
     count = sum(known.kind == "coordinate" for known in scene.names.values())
+    count -= 4 * len(quaternions.names(scene))  # they bring their own speeds
     if entries and len(entries) != count:
         message = f"{len(entries)} speeds for {count} coordinates"
         scene.ledger.note(Mistake(entries[0].key, "E506", message, "give as many, or none"))

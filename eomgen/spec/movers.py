@@ -38,7 +38,7 @@ def _formulas(
     for point in points:
         yield ("place", point.name), tuple(_of(point.place))
     for body in bodies:
-        angles = tuple(turn.angle for turn in body.frame.turns)
+        angles = tuple(f for turn in body.frame.turns for f in turn.formulas)
         yield ("frame", body.name), (*_of(body.frame.origin), *angles)
         yield ("place", body.name), tuple(_of(body.com))
 

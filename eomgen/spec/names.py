@@ -1,14 +1,17 @@
 """The names of a file, all in one space: each is declared once, before any formula is read."""
 
+from collections.abc import Iterable
+
 import sympy as sp
 
 from eomgen.dimension import LENGTH, NONE, TIME
 from eomgen.model import TIME as T
+from eomgen.spec import quaternions
 from eomgen.spec.formula import NAME, RESERVED
 from eomgen.spec.formulas import field, text_of
 from eomgen.spec.language import LANGUAGE
 from eomgen.spec.ledger import Ledger, Mistake, shown
-from eomgen.spec.reader import Mapping, Node, Scalar
+from eomgen.spec.reader import Entry, Mapping, Node, Scalar
 from eomgen.spec.scope import PRIMES, Known
 from eomgen.spec.structure import is_misspelt
 
@@ -35,10 +38,16 @@ def declare(root: Mapping, ledger: Ledger) -> dict[str, Known]:
     for section, (kind, orders) in KINDS.items():
         table = root.get(section)
         for entry in table.entries if isinstance(table, Mapping) else ():
-            known = _known(entry.key, entry.value, kind, orders)
-            if ledger.attempt(check, entry.key, names) is not None:
-                names[entry.key.text] = known
+            for key, known in _declared(entry, kind, orders):
+                if ledger.attempt(check, key, names) is not None:
+                    names[key.text] = known
     return names
+
+
+def _declared(entry: Entry, kind: str, orders: int) -> Iterable[tuple[Scalar, Known]]:
+    if kind == "coordinate" and quaternions.is_quaternion(entry.value):
+        return quaternions.declared(entry.key)
+    return [(entry.key, _known(entry.key, entry.value, kind, orders))]
 
 
 def are_complete(root: Mapping) -> bool:

@@ -3,8 +3,8 @@
 import sympy as sp
 
 from eomgen.dimension import LENGTH, MASS, NONE
-from eomgen.model import Body, Frame, Place, Point, Turn
-from eomgen.spec import inertias
+from eomgen.model import Body, Frame, Place, Point, Quaternion, Turn
+from eomgen.spec import inertias, quaternions
 from eomgen.spec.formulas import description, scalar, tree_of, value_of, vector
 from eomgen.spec.ledger import CONSEQUENCE, Mistake, shown, suggestion
 from eomgen.spec.reader import Entry, Mapping, Node, Scalar, Sequence
@@ -168,7 +168,7 @@ def _origin_of(name: str, scene: Scene) -> Place:
     return Place((sp.S.Zero,) * scene.size, on=name)
 
 
-def _turns(keys: Mapping, scene: Scene) -> tuple[Turn, ...]:
+def _turns(keys: Mapping, scene: Scene) -> tuple[Turn | Quaternion, ...]:
     """The rotations of a body: `angle` in the plane, `turn` in solid space."""
     for key, space in (("angle", "plane"), ("turn", "solid")):
         if keys.get(key) is not None and scene.space != space:
@@ -178,12 +178,16 @@ def _turns(keys: Mapping, scene: Scene) -> tuple[Turn, ...]:
     angle, turn = keys.get("angle"), keys.get("turn")
     if angle is not None:
         return (Turn(_axis(AXES["z"]), scalar(angle, scene, Wanted("turn", "an angle", NONE))),)
+    if isinstance(turn, Mapping):
+        return (quaternions.turn(turn, scene),)
     if isinstance(turn, Sequence):
         return tuple(_turn(item, scene) for item in turn.items)
     return ()
 
 
-def _turn(node: Node, scene: Scene) -> Turn:
+def _turn(node: Node, scene: Scene) -> Turn | Quaternion:
+    if isinstance(node, Mapping):
+        return quaternions.turn(node, scene)
     assert isinstance(node, Sequence)
     axis, angle = node.items
     return Turn(axis_of(axis, scene), scalar(angle, scene, Wanted("turn", "an angle", NONE)))

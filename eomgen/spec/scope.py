@@ -184,6 +184,7 @@ WORDS = {
     "coordinate''": "an acceleration",
     "speed": "a speed",
     "speed'": "the rate of a speed",
+    "quaternion": "a quaternion",
     "input": "an input",
     "point": "a point",
     "body": "a body",
