@@ -1,0 +1,1 @@
+"""Everything `benchmarks/engine.py` runs: scenes, our peers, and how they are timed."""

@@ -1,0 +1,63 @@
+"""The plot beside the tables: time against size, both logarithmic."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+
+from lab.derivation import SERIES, Times
+from lab.derive_one import WHO
+from lab.forward import Column
+
+CARTS = {"cart+2": 2, "cart+4": 4, "cart+8": 8, "cart+16": 16}
+SHOWN = ("cart", "skew arm", "masses")
+
+
+def draw(times: Times, columns: dict[str, Column], compiled: dict[int, float], to: Path) -> None:
+    """An SVG that is the same for the same numbers."""
+    mpl.use("svg")
+    mpl.rcParams.update({"svg.hashsalt": "eomgen", "font.size": 8, "axes.grid": True})
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(1, len(SHOWN) + 2, figsize=(19, 4.2), layout="constrained")
+    for axis, scene in zip(axes, SHOWN, strict=False):
+        _derivation(axis, times, scene)
+    _forward(axes[-2], columns)
+    _compiled(axes[-1], compiled)
+    for axis in axes:
+        axis.set(xscale="log", yscale="log")
+        if axis.get_legend_handles_labels()[0]:
+            axis.legend(fontsize=6)
+    figure.savefig(to, metadata={"Date": None})
+    pyplot.close(figure)
+
+
+def _derivation(axis: Axes, times: Times, scene: str) -> None:
+    for who in WHO:
+        found = [
+            (c, times[who, scene, c].seconds) for c in SERIES[scene] if (who, scene, c) in times
+        ]
+        points = [(c, s) for c, s in found if s is not None]
+        if points:
+            axis.plot(*zip(*points, strict=True), "o-", label=who, ms=3)
+    axis.set(title=f"{scene}: to C text", xlabel="n", ylabel="processor seconds")
+
+
+def _forward(axis: Axes, columns: dict[str, Column]) -> None:
+    for row in dict.fromkeys(row for c in columns.values() for row in c.times):
+        points = [
+            (n, columns[name].times[row][0])
+            for name, n in CARTS.items()
+            if name in columns and row in columns[name].times
+        ]
+        if points:
+            axis.plot(*zip(*points, strict=True), "o-", label=row, ms=3)
+    axis.set(title="cart: forward dynamics", xlabel="pendulums", ylabel="ns a call")
+
+
+def _compiled(axis: Axes, compiled: dict[int, float]) -> None:
+    if compiled:
+        axis.plot(list(compiled), list(compiled.values()), "o-", ms=3, label="ours")
+    axis.set(title="gcc -O2 of a spatial chain", xlabel="joints", ylabel="processor seconds")
