@@ -7,13 +7,16 @@ from __future__ import annotations
 
 import gc
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn
 
 import click
 
 from eomgen import __version__, files
+from eomgen.cli_chart import chart
 from eomgen.cli_common import (
+    compensated_option,
     complain,
     decoded,
     derived,
@@ -21,6 +24,7 @@ from eomgen.cli_common import (
     format_option,
     formulation_option,
     functions_option,
+    integrator_option,
     language_option,
     list_functions_option,
     print_files,
@@ -31,11 +35,13 @@ from eomgen.cli_common import (
 )
 from eomgen.cli_import import import_robot
 from eomgen.cli_regressor import regressor
+from eomgen.cli_simulate import simulate
 from eomgen.errors import EomgenError, UsageError
 from eomgen.wanted import Wanted, wanted
 
 COLLECT_RARELY = 200_000  # a command lives for a second; looking for circles would take a tenth
 SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
+NOTES = frozenset(("latex", "text"))  # targets that show the closed form
 TARGET_NAMES = ("latex", "c", "python", "text")
 
 EXAMPLES = """\b
@@ -67,7 +73,7 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
     from eomgen.outputs import Wish, rendered
 
     wish = Wish(("text",), wishes["language"], wishes["templates"], wishes["steps"])
-    (text,) = rendered(studied(spec, format_, Wanted(formulation)), wish).values()
+    (text,) = rendered(studied(spec, format_, Wanted(formulation, notes=True)), wish).values()
     click.echo(text, nl=False)
 
 
@@ -96,6 +102,8 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 @formulation_option
 @click.option("--baumgarte", metavar="ALPHA", help="Stabilise multipliers [1/s], only if asked.")
 @click.option("--step", metavar="H", help="The step [s] that caps ALPHA at 0.2/H.")
+@integrator_option
+@compensated_option
 @functions_option
 @list_functions_option
 @format_option
@@ -104,13 +112,23 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
     from eomgen.outputs import Wish, rendered
 
     targets = wishes["targets"] or ("latex", "c", "python")
-    functions = tuple(wishes["functions"])
-    wish = Wish(targets, wishes["language"], wishes["templates"], wishes["steps"], functions)
+    functions, integrators = tuple(wishes["functions"]), wishes["integrators"]
+    if wishes["compensated"] and not integrators:
+        raise UsageError("--compensated is how integrators add: say --integrator too")
+    targets += ("c-steps",) if integrators else ()
+    wish = Wish(
+        targets,
+        wishes["language"],
+        wishes["templates"],
+        wishes["steps"],
+        functions,
+        integrators,
+        wishes["compensated"],
+    )
     with reporting(format_, files.shown(spec)):
         choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
-    study = studied(spec, format_, choice)
-    with reporting(format_, files.shown(spec)):
-        made = rendered(study, wish)
+        choice = replace(choice, notes=not NOTES.isdisjoint(targets))
+    made = rendered(studied(spec, format_, choice), wish)
     if output == files.STANDARD:
         print_files(made)
         return
@@ -281,6 +299,8 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
 
 
 commands.add_command(import_robot)
+commands.add_command(simulate)
+commands.add_command(chart)
 
 
 def main() -> NoReturn:

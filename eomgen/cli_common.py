@@ -46,6 +46,18 @@ formulation_option = click.option(
     help="Equations of a scene with constraints.",
 )
 
+integrator_option = click.option(
+    "--integrator",
+    "integrators",
+    multiple=True,
+    metavar="METHOD",
+    help="A step function in C, repeatable: semi-euler, verlet, rk4, dopri5, rosenbrock2, "
+    "midpoint, all.",
+)
+compensated_option = click.option(
+    "--compensated", is_flag=True, help="Integrators keep what rounding loses: for float."
+)
+
 
 def _split(context: click.Context, option: click.Parameter, texts: tuple[str, ...]) -> list[str]:
     """Names between commas, of all that was given."""

@@ -10,14 +10,15 @@ from eomgen import files
 from eomgen.cli_common import epilog, format_option, reporting
 from eomgen.errors import UsageError
 
-EXACT_WITHIN = "1e-9"  # rad
+NEAR = "1e-9"  # rad
+FARTHEST = Decimal("0.01")  # rad
 
 
 @click.command(
     "import",
     epilog=epilog(
         "eomgen import robot.urdf -o robot.yaml",
-        "eomgen import quadruped.urdf --floating-base | eomgen check -",
+        "eomgen import quadruped.urdf --floating-base -o quadruped.yaml",
     ),
 )
 @click.argument("robot", type=str)
@@ -28,7 +29,7 @@ EXACT_WITHIN = "1e-9"  # rad
     "--round-angles", is_flag=True, help="Angles of the file become multiples of pi/12 where near."
 )
 @click.option(
-    "--within", default=EXACT_WITHIN, show_default=True, metavar="RAD", help="How near that is."
+    "--within", metavar="RAD", help=f"With --round-angles: how near that is.  [default: {NEAR}]"
 )
 @click.option("--mend-inertias", is_flag=True, help="Raise moments of inertia no body can have.")
 @click.option("--force", is_flag=True, help="Overwrite the spec.")
@@ -57,19 +58,23 @@ def import_robot(robot: str, output: str, force: bool, format_: str, **wishes: A
         click.echo(str(path))
 
 
-def _within(round_angles: bool, within: str) -> Decimal | None:
+def _within(round_angles: bool, within: str | None) -> Decimal | None:
     """The tolerance [rad] if angles are rounded."""
     from eomgen.spec.ledger import Mistake
     from eomgen.spec.reader import Point
     from eomgen.urdf.numbers import number
 
+    if not round_angles:
+        if within is not None:
+            raise UsageError("--within goes with --round-angles; give both")
+        return None
     try:
-        value = number(within, Point(1, 1))
+        value = number(within or NEAR, Point(1, 1))
     except Mistake as mistake:
         raise UsageError(f"--within: {mistake}") from mistake
-    if not 0 <= value <= Decimal("0.01"):
-        raise UsageError(f"--within is {within}; give 0 to 0.01 [rad]")
-    return value if round_angles else None
+    if not 0 <= value <= FARTHEST:
+        raise UsageError(f"--within is {within}; give 0 to {FARTHEST} [rad]")
+    return value
 
 
 def _write(path: Path, text: str, force: bool) -> list[Path]:

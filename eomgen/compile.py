@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -26,12 +26,17 @@ from eomgen.mechanics import (
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.equations import Contribution, Equations
 from eomgen.mechanics.kinematics import Kinematics
-from eomgen.mechanics.vectors import dot
+from eomgen.mechanics.recursive import build, engine, loads, recursion
+from eomgen.mechanics.recursive.engine import Engine
+from eomgen.mechanics.recursive.lumping import lumped
+from eomgen.mechanics.recursive.records import NoTree, Tree
+from eomgen.mechanics.vectors import Matrix, Vector, dot
 from eomgen.model import TIME as TIME_SYMBOL
 from eomgen.model import Coordinate, Description, Model, Prescribed, Speed
 from eomgen.program import Function, Program, Read, Variable
 from eomgen.spec.units import si_unit
 
+LARGEST_MATRIX = 64  # equations; above, n^2 entries of M are not written
 LARGEST_UNROLLED = 12  # equations; above, L D L' runs in a loop
 
 
@@ -43,6 +48,7 @@ class Machine:
     kept: tuple[str, ...] = ()  # names of the independent rows, with a multiplier each
     pivots: ldl.Pivots = ()  # that the rates divide by
     baumgarte: Fraction = Fraction(0)  # alpha [1/s] of stabilised rows; zero: none
+    weight: Fraction = Fraction(0)  # w, where M + w J'J has to stand for a singular M
 
     @property
     def model(self) -> Model:
@@ -56,9 +62,61 @@ class Machine:
         return tuple(node for node in dict.fromkeys(bound) if isinstance(node.datum, Read))
 
     @cached_property
+    def tree(self) -> Tree | NoTree:
+        """The tree of joints, or why there is none."""
+        try:
+            return build.tree_of(self.kinematics)
+        except NoTree as reason:
+            return reason
+
+    @cached_property
+    def engine(self) -> Engine | None:
+        """The way to the accelerations of a tree without links; None: by the mass matrix."""
+        if isinstance(self.tree, NoTree) or self.kept:
+            return None
+        return engine.choose(self.kinematics, self.tree)
+
+    @cached_property
     def equations(self) -> Equations[Node]:
-        """M, h, Q by d'Alembert's principle."""
-        return virtual_work.derive(self.kinematics)
+        """M, h, Q: by recursion over a tree, by d'Alembert's principle where there is none."""
+        if isinstance(self.tree, NoTree):
+            return virtual_work.derive(self.kinematics)
+        return Equations(self.mass_matrix, self.bias, self.generalized_forces)
+
+    @cached_property
+    def _lumped(self) -> Tree | None:
+        """The tree that the recursion goes over."""
+        if isinstance(self.tree, NoTree):
+            return None
+        return lumped(self.tree) if self.engine is None else self.engine.tree
+
+    @cached_property
+    def mass_matrix(self) -> Matrix[Node]:
+        """M, which a large tree needs for nothing else."""
+        tree = self._lumped
+        return self.equations.mass_matrix if tree is None else recursion.mass_matrix(tree)
+
+    @cached_property
+    def bias(self) -> Vector[Node]:
+        """H of M u' + h = Q."""
+        tree = self._lumped
+        return self.equations.bias if tree is None else recursion.inverse_dynamics(tree, False)
+
+    @cached_property
+    def generalized_forces(self) -> Vector[Node]:
+        """Q of M u' + h = Q."""
+        tree = self._lumped
+        if tree is None:
+            return self.equations.generalized_forces
+        return loads.generalized_forces(self.kinematics, tree)
+
+    def inverse_dynamics(self, accelerations: Sequence[Node]) -> Vector[Node]:
+        """M u' + h - Q for these u': by recursion, or by d'Alembert's principle."""
+        tree = self._lumped
+        if tree is None:
+            return virtual_work.inverse_dynamics(self.kinematics, accelerations)
+        applied = loads.of(self.kinematics, tree)
+        return recursion.inverse_dynamics(tree, True, accelerations, applied)
 
     @cached_property
     def energy(self) -> tuple[Node, Node]:
@@ -74,12 +132,22 @@ class Machine:
     @cached_property
     def rows(self) -> tuple[Row[Node], ...]:
         """Every row of the bilateral constraints."""
-        return constraints.rows(self.kinematics)
+        return constraints.rows(self.kinematics, speeds.symbols(self.model))
 
     @cached_property
     def schur(self) -> multipliers.Schur:
         """The Schur complement of the independent rows."""
-        return multipliers.schur(self.equations, [r for r in self.rows if r.name in self.kept])
+        return multipliers.schur(self.equations, self.independent_rows, self.weight)
+
+    @property
+    def independent_rows(self) -> list[Row[Node]]:
+        """The rows with a multiplier each."""
+        return [r for r in self.rows if r.name in self.kept]
+
+    @cached_property
+    def inertia(self) -> tuple[tuple[Node, ...], ...]:
+        """What is divided by: M, or M + w J'J."""
+        return multipliers.inertia(self.equations, self.independent_rows, self.weight)
 
     @cached_property
     def linked(self) -> multipliers.Solution:
@@ -88,16 +156,15 @@ class Machine:
 
     @cached_property
     def solution(self) -> tuple[tuple[Node, ...], ldl.Pivots]:
-        """u' = M^-1 (Q - h), unrolled up to `LARGEST_UNROLLED`; with multipliers of kept rows."""
+        """u' by the engine of a tree, or M^-1 (Q - h), or with multipliers of kept rows."""
         if self.kept:
             return self.linked.accelerations, self.linked.pivots
+        if self.engine is not None:
+            return self.engine.accelerations, self.pivots + self.engine.pivots
         matrix, bias = self.equations.mass_matrix, self.equations.bias
         right = [q - h for q, h in zip(self.equations.generalized_forces, bias, strict=True)]
-        if len(right) > LARGEST_UNROLLED:
-            (solution,) = ldl.solve_in_loop(matrix, right)
-            return tuple(solution), self.pivots
-        (solution,), pivots = ldl.solve(matrix, right)
-        return tuple(solution), self.pivots + pivots
+        solution, pivots = solved(matrix, right)
+        return solution, self.pivots + pivots
 
     @cached_property
     def rates(self) -> tuple[Node, ...]:
@@ -109,24 +176,37 @@ class Machine:
         """q'' = (dq'/du) u' + the rate of q' with u' = 0."""
         if not self.model.speeds:
             return self.solution[0]
-        algebra = self.kinematics.algebra
-        one = algebra.number(1)
+        coasting = (self.kinematics.rate(r) for r in self.rates)
+        return tuple(a + c for a, c in zip(self.turned(self.solution[0]), coasting, strict=True))
+
+    @cached_property
+    def partial_rates(self) -> tuple[tuple[Node, ...], ...]:
+        """N = dq'/du of declared speeds, a row for each coordinate."""
+        algebra, one = self.kinematics.algebra, self.kinematics.algebra.number(1)
         return tuple(
-            dot([algebra.along(r, {s.symbol: one}) for s in self.model.speeds], self.solution[0])
-            + self.kinematics.rate(r)
-            for r in self.rates
+            tuple(algebra.along(r, {s.symbol: one}) for s in self.model.speeds) for r in self.rates
         )
+
+    def turned(self, values: Sequence[Node]) -> tuple[Node, ...]:
+        """From speeds to coordinates: N * values; the values themselves where the speeds are q'."""
+        if not self.model.speeds:
+            return tuple(values)
+        return tuple(dot(row, values) for row in self.partial_rates)
+
+    @property
+    def speeds(self) -> tuple[Node, ...]:
+        """The speeds u."""
+        return tuple(self.kinematics.algebra.of(s) for s in speeds.symbols(self.model))
 
     @cached_property
     def outputs(self) -> tuple[Node, ...]:
         """The author's own formulas."""
-        formulas = [o.formula for o in self.model.outputs]
-        unknown = {c.acceleration for c in self.model.coordinates}
-        unknown |= {s.rate for s in self.model.speeds}
-        algebra = self.kinematics.algebra
-        if any(f.free_symbols & unknown for f in formulas):
-            algebra = algebra.extended(self.motion)
-        return tuple(algebra.of(f) for f in formulas)
+        return self.outputs_with(self.motion if holds_motion(self.model) else {})
+
+    def outputs_with(self, motion: Mapping[sp.Symbol, Node]) -> tuple[Node, ...]:
+        """The author's own formulas over these q'' and u'; none where no formula holds one."""
+        algebra = self.kinematics.algebra.extended(motion)
+        return tuple(algebra.of(o.formula) for o in self.model.outputs)
 
     @cached_property
     def motion(self) -> dict[sp.Symbol, Node]:
@@ -134,6 +214,23 @@ class Machine:
         pairs = zip(self.model.coordinates, self.accelerations, strict=True)
         own = zip(self.model.speeds, self.solution[0], strict=bool(self.model.speeds))
         return {s.rate: a for s, a in own} | {c.acceleration: a for c, a in pairs}
+
+
+def solved(
+    matrix: Sequence[Sequence[Node]], right: Sequence[Node]
+) -> tuple[tuple[Node, ...], ldl.Pivots]:
+    """x of A x = b, unrolled up to `LARGEST_UNROLLED`, else in a loop that checks its pivots."""
+    if len(right) > LARGEST_UNROLLED:
+        (solution,) = ldl.solve_in_loop(matrix, right)
+        return tuple(solution), ()
+    (solution,), pivots = ldl.solve(matrix, right)
+    return tuple(solution), pivots
+
+
+def holds_motion(model: Model) -> bool:
+    """Whether an output mentions q'' or u'."""
+    held = {c.acceleration for c in model.coordinates} | {s.rate for s in model.speeds}
+    return any(o.formula.free_symbols & held for o in model.outputs)
 
 
 def machine_of(model: Model) -> Machine:
@@ -153,19 +250,19 @@ def _flat(rows: Sequence[Sequence[Node]]) -> list[Node]:
 
 
 def _mass_matrix(m: Machine) -> Function:
-    n = len(m.equations.bias)
+    n = len(m.mass_matrix)
     about = "M of M u' + h = Q"
-    return assemble("mass_matrix", about, (n, n), _flat(m.equations.mass_matrix))
+    return assemble("mass_matrix", about, (n, n), _flat(m.mass_matrix))
 
 
 def _bias(m: Machine) -> Function:
     about = "h of M u' + h = Q: inertia terms without accelerations"
-    return assemble("bias", about, (len(m.equations.bias),), m.equations.bias)
+    return assemble("bias", about, (len(m.bias),), m.bias)
 
 
 def _generalized_forces(m: Machine) -> Function:
     about = "Q of M u' + h = Q: everything applied"
-    forces = m.equations.generalized_forces
+    forces = m.generalized_forces
     return assemble("generalized_forces", about, (len(forces),), forces)
 
 
@@ -218,8 +315,10 @@ FUNCTIONS: dict[str, Build] = {
 
 
 def wanted(model: Model) -> tuple[str, ...]:
-    """The functions of a model: q'' apart only where the speeds are not q'."""
-    unneeded = set() if model.speeds else {"coordinate_accelerations"}
+    """The functions of a model: q'' apart only where the speeds are not q', M of few of them."""
+    few = len(speeds.symbols(model)) <= LARGEST_MATRIX
+    unneeded: set[str] = set() if few else {"mass_matrix"}
+    unneeded |= set() if model.speeds else {"coordinate_accelerations"}
     unneeded |= set() if model.quaternions else {"project_positions"}
     return tuple(f for f in FUNCTIONS if f not in unneeded)
 
@@ -244,6 +343,7 @@ def program(m: Machine) -> Program:
         ),
         outputs=tuple(_variable(o.name, o.description) for o in model.outputs),
         functions=tuple(FUNCTIONS[name](m) for name in wanted(model)),
+        engine="" if m.engine is None else m.engine.said,
     )
 
 

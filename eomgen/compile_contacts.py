@@ -8,8 +8,8 @@ from functools import cached_property
 
 from eomgen.algebra.assemble import assemble
 from eomgen.algebra.graph import Node
-from eomgen.compile import Machine
-from eomgen.mechanics import contacts, contacts_modes, contacts_motion
+from eomgen.compile import Machine, holds_motion
+from eomgen.mechanics import contacts, contacts_conditions, contacts_modes, contacts_motion
 from eomgen.mechanics.contacts import Contact
 from eomgen.mechanics.contacts_modes import FLIGHT, Mode
 from eomgen.mechanics.contacts_motion import Motion
@@ -31,6 +31,11 @@ class Touching:
     def modes(self) -> tuple[Mode, ...]:
         """The modes whose forces are determined."""
         return contacts_modes.modes(self.machine, self.contacts)
+
+    @cached_property
+    def motions(self) -> dict[str, Motion]:
+        """The motion in every mode."""
+        return {m.name: contacts_motion.motion(self.machine, self.contacts, m) for m in self.modes}
 
     @cached_property
     def one_sided(self) -> tuple[Contact, ...]:
@@ -91,11 +96,15 @@ def _impacts(scene: Touching) -> Iterator[Function]:
 def _motions(scene: Touching) -> Iterator[Function]:
     """Accelerations, forces and events of every mode; flight has the scene's own accelerations."""
     for mode in scene.modes:
-        found = contacts_motion.motion(scene.machine, scene.contacts, mode)
+        found = scene.motions[mode.name]
         if mode.name != FLIGHT:
             yield _accelerations(mode, found)
             yield _forces(scene, mode, found)
+            yield from _surface_forces(scene, mode, found)
+            yield from _of_guides(scene, mode, found)
         yield _events(scene, mode, found)
+        yield _conditions(scene, mode, found)
+        yield from _jam(mode, found)
 
 
 def _accelerations(mode: Mode, found: Motion) -> Function:
@@ -116,6 +125,66 @@ def _events(scene: Touching, mode: Mode, found: Motion) -> Function:
     what = ", ".join(mode.events)
     about = f"positive in the mode {mode.name}, which ends where one falls to zero: {what}"
     return assemble(f"events_{mode.name}", about, (len(values),), values, found.pivots)
+
+
+def _surface_forces(scene: Touching, mode: Mode, found: Motion) -> Iterator[Function]:
+    """Normal force and friction in newtons."""
+    zero = found.accelerations[0].graph.zero
+    touches = [(c.name, c.touch) for c in scene.contacts if c.touch is not None]
+    if not touches:
+        return
+    values = [
+        force
+        for name, touch in touches
+        for force in (
+            touch.steepness * found.normal.get(name, zero),
+            *found.friction.get(name, [zero] * len(touch.slips)),
+        )
+    ]
+    about = (
+        f"forces on the touching point in the mode {mode.name}, along the normal and each tangent "
+        f"[N], one row each: {', '.join(name for name, _ in touches)}"
+    )
+    shape = (len(touches), len(values) // len(touches))
+    yield assemble(f"surface_forces_{mode.name}", about, shape, values, found.pivots)
+
+
+def _of_guides(scene: Touching, mode: Mode, found: Motion) -> Iterator[Function]:
+    """Multipliers, and outputs with accelerations, where there is no motion without a mode."""
+    machine = scene.machine
+    if not machine.model.guides:
+        return
+    values = list(found.multipliers.values())
+    about = f"lambda of the independent rows in the mode {mode.name}"
+    yield assemble(f"multipliers_{mode.name}", about, (len(values),), values, found.pivots)
+    if holds_motion(machine.model):
+        pairs = zip(machine.model.coordinates, found.accelerations, strict=True)
+        outputs = machine.outputs_with({c.acceleration: a for c, a in pairs})
+        about = f"the outputs of the spec in the mode {mode.name}"
+        yield assemble(f"outputs_{mode.name}", about, (len(outputs),), outputs, found.pivots)
+
+
+def _conditions(scene: Touching, mode: Mode, found: Motion) -> Function:
+    """What tells at a state whether the mode is the motion."""
+    conditions = contacts_conditions.conditions(scene.contacts, mode, found)
+    values = [v for c in conditions for v in c.values]
+    listed = ", ".join(c.name + " and its rates" * (len(c.values) > 1) for c in conditions)
+    about = f"what begins the mode {mode.name}: {listed}"
+    return assemble(f"conditions_{mode.name}", about, (len(values),), values, found.pivots)
+
+
+def _jam(mode: Mode, found: Motion) -> Iterator[Function]:
+    """Painleve's paradox, where a contact slides."""
+    values = [*found.jam.margins, *([] if found.jam.fitting is None else [found.jam.fitting])]
+    if not values:
+        return
+    about = (
+        f"margins of the mode {mode.name}, one for each sliding contact: where one is not positive "
+        "friction jams and the forces are not determined (Painleve's paradox)"
+    )
+    if found.jam.fitting is not None:
+        about += "; then how many normal forces satisfy the mode"
+    yield assemble(f"jam_{mode.name}", about, (len(values),), values, found.jam.pivots)
 
 
 def _listed(found: Sequence[Contact]) -> str:

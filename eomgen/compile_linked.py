@@ -25,8 +25,8 @@ def _rates(m: Machine) -> Function:
 
 
 def _jacobian(m: Machine) -> Function:
-    about = "J, d rate residual / d q', one row for each constraint"
-    shape = (len(m.rows), len(m.model.coordinates))
+    about = "J, d rate residual / d u, one row for each constraint"
+    shape = (len(m.rows), len(m.speeds))
     entries = [entry for row in m.rows for entry in row.jacobian]
     return assemble("constraint_jacobian", about, shape, entries, m.pivots)
 
@@ -42,8 +42,10 @@ def _project_positions(m: Machine) -> Function:
     # a nonholonomic row leaves the positions as they are
     residuals = [_or_zero(row.residual, row.rate) for row in m.schur.rows]
     bindings = m.kinematics.algebra.bindings
-    coordinates = [bindings[c.symbol] for c in m.model.coordinates]
-    values, pivots = multipliers.projected(m.schur, coordinates, residuals)
+    still = [m.kinematics.algebra.number(0)] * len(m.speeds)
+    moved, pivots = multipliers.projected(m.schur, still, residuals)
+    steps = zip(m.model.coordinates, m.turned(moved), strict=True)
+    values = [bindings[c.symbol] + step for c, step in steps]
     return assemble("project_positions", about, (len(values),), values, pivots)
 
 
@@ -52,8 +54,8 @@ def _or_zero(value: Node | None, other: Node) -> Node:
 
 
 def _project_rates(m: Machine) -> Function:
-    about = "q' - M^-1 J' S^-1 (J q' + ...): the nearest admissible rates, in the metric of M"
-    values, pivots = multipliers.projected(m.schur, m.rates, [r.rate for r in m.schur.rows])
+    about = "u - M^-1 J' S^-1 (J u + ...): the nearest admissible speeds, in the metric of M"
+    values, pivots = multipliers.projected(m.schur, m.speeds, [r.rate for r in m.schur.rows])
     return assemble("project_rates", about, (len(values),), values, pivots)
 
 
@@ -66,8 +68,9 @@ FUNCTIONS: dict[str, Build] = {
     "project_positions": _project_positions,
     "project_rates": _project_rates,
 }
-OVER_POSITIONS = ("project_positions",)  # these read no rates: they serve every state that has q
-OVER_OWN_RATES = ("constraint_residuals", "constraint_rates", "constraint_jacobian")
+# these read no rates: they serve every state that has q
+OVER_POSITIONS = ("constraint_jacobian", "project_positions")
+OVER_OWN_RATES = ("constraint_residuals", "constraint_rates")
 
 
 def functions(m: Machine, names: Sequence[str] = tuple(FUNCTIONS)) -> tuple[Function, ...]:

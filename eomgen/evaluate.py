@@ -254,12 +254,14 @@ def named_results(chosen: Engine, source: Program, model: Model, state: State) -
     _need_accelerations(source, state)
     coordinates = [c.name for c in model.coordinates]
     accelerations = "coordinate_accelerations" if model.speeds else "accelerations"
-    result = {
-        "accelerations": named(accelerations, coordinates),
-        "energy": named("energy", ("kinetic", "potential")),
-        "generalized_forces": named("generalized_forces", speeds.names(model)),
-        "outputs": named("outputs", [o.name for o in source.outputs]),
+    wanted = {
+        "accelerations": (accelerations, coordinates),
+        "energy": ("energy", ("kinetic", "potential")),
+        "generalized_forces": ("generalized_forces", speeds.names(model)),
+        "outputs": ("outputs", [o.name for o in source.outputs]),
     }
     if model.speeds:
-        result["speed_derivatives"] = named("accelerations", speeds.names(model))
-    return result
+        wanted["speed_derivatives"] = ("accelerations", speeds.names(model))
+    # where friction decides the motion each mode has accelerations of its own
+    there = {f.name for f in source.functions}
+    return {name: named(*how) for name, how in wanted.items() if how[0] in there}

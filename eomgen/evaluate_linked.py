@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from eomgen import interpreter, reactions
+from eomgen import compile_watch, interpreter, reactions
 from eomgen.algebra.arithmetic import evaluate as node_values
 from eomgen.algebra.arithmetic import mpmath_arithmetic
 from eomgen.compile_contacts import Touching
@@ -83,21 +83,43 @@ def placed(
 
 def _result(study: LinkedStudy, source: Program, chosen: Engine, state: State) -> Result:
     result = named_results(chosen, source, study.scene.model, state)
+    if any(f.name == "watch" for f in source.functions):
+        watched = compile_watch.names(study.machine, None)
+        bits = compile_watch.mask(watched, chosen.call("watch", state))
+        result["status"] = {"bits": bits, "words": list(compile_watch.words(bits))}
     if study.scene.touches:
-        touching = Touching(study.machine)
-        result["contacts"] = contacts(chosen, touching, study.scene.model, state)
+        result["contacts"] = contacts(chosen, Touching(study.machine), state)
     if not study.machine.kept:
         return result
-    raw = chosen.call("multipliers", state)
-    multipliers = dict(zip(_kept(study), raw, strict=True))
-    shown = {name: chosen.shown(v) for name, v in multipliers.items()}
-    result["multipliers"] = shown
-    result["reactions"] = _reactions(study, multipliers, state, chosen)
+    result |= _motion_and_forces(study, chosen, state, result.get("contacts"))
     result["residuals"] = {
         "position": _residuals(study, chosen, state, "constraint_residuals"),
         "rate": _residuals(study, chosen, state, "constraint_rates"),
     }
     return result
+
+
+def _motion_and_forces(
+    study: LinkedStudy, chosen: Engine, state: State, modes: Result | None
+) -> Result:
+    """Multipliers and reactions; beside a rough guide all that moves is that of the one mode.
+
+    Nothing where no mode holds, or several do.
+    """
+    shown: Result = {}
+    function = "multipliers"
+    if study.scene.model.guides:
+        assert modes is not None
+        if len(modes["holds"]) != 1:
+            return {}
+        (name,) = modes["holds"]
+        function = f"multipliers_{name}"
+        mode = modes["modes"][name]
+        shown = {k: mode[k] for k in ("accelerations", "outputs") if k in mode}
+    multipliers = dict(zip(_kept(study), chosen.call(function, state), strict=True))
+    shown["multipliers"] = {name: chosen.shown(v) for name, v in multipliers.items()}
+    shown["reactions"] = _reactions(study, multipliers, state, chosen)
+    return shown
 
 
 def _kept(study: LinkedStudy) -> list[str]:
@@ -117,7 +139,9 @@ def _reactions(
 ) -> dict[str, Any]:
     """Named constraint forces; their factors are computed in the digits of the multipliers."""
     given = _given(study, state)
-    leaves = {n: given[n.datum.argument][n.datum.index] for n in study.machine.leaves}
+    # factors hold no rates and no inputs
+    held = [n for n in study.scene.links.leaves if n.datum.index < len(given[n.datum.argument])]
+    leaves = {n: given[n.datum.argument][n.datum.index] for n in held}
 
     def factor(node: Any) -> Any:
         (value,) = node_values([node], leaves, PRECISE)
@@ -174,7 +198,9 @@ def _projected(study: LinkedStudy, source: Program, state: State) -> State:
 
     for _ in range(NEWTON_STEPS):
         state = replace(state, coordinates=step("project_positions", state))
-    state = replace(state, rates=step("project_rates", state))
+    moved = step("project_rates", state)
+    has_speeds = bool(study.scene.model.speeds)
+    state = replace(state, rates=None, speeds=moved) if has_speeds else replace(state, rates=moved)
     if max(size for _, size in _off(study, source, state)) > ON_CONSTRAINT:
         raise CheckError("the state cannot be projected: Newton's method does not converge")
     return state

@@ -6,23 +6,28 @@ import random
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from eomgen import compile_watch
 from eomgen.algebra.arithmetic import FLOAT, evaluate
-from eomgen.algebra.closed import ClosedForm, Evaluation
+from eomgen.algebra.closed import ClosedForm
 from eomgen.algebra.graph import Node, below
-from eomgen.algebra.normal import Form
-from eomgen.analysis import linkage
+from eomgen.analysis import augmented, linkage, virtual
 from eomgen.analysis.admissible import Admissible
 from eomgen.analysis.cards import Report
+from eomgen.analysis.elimination import Matrix
+from eomgen.analysis.linkage import Linkage
 from eomgen.compile import Machine
+from eomgen.compile_watch import Block
 from eomgen.errors import UsageError
 from eomgen.mechanics import constraints, lagrange, minimal, minimal_graph, nullspace
 from eomgen.mechanics.minimal import Elimination, Residual
-from eomgen.mechanics.minimal_graph import Chosen
-from eomgen.model import TIME, Model
+from eomgen.mechanics.minimal_graph import Chosen, measure
+from eomgen.model import TIME, Model, Speed
+from eomgen.program import Read
 from eomgen.wanted import AUTO, Wanted
 
 DEAD_POINT_SAMPLES = 200
@@ -43,10 +48,20 @@ class Linked:
         """The scene."""
         return self.machine.model
 
+    @cached_property
+    def links(self) -> Linkage:
+        """The rows as numbers."""
+        return linkage.of(self.machine)
+
+    @cached_property
+    def made(self) -> dict[str, Formulation | UsageError]:
+        """Every formulation, or why the scene does not have it."""
+        return {name: _attempt(maker, self) for name, maker in MAKERS.items()}
+
     @property
     def touches(self) -> bool:
-        """Whether a constraint is one-sided: contact and flight need all coordinates."""
-        return any(c.kind == "unilateral" for c in self.model.constraints)
+        """Whether a constraint is one-sided or rough: its modes need all coordinates."""
+        return any(c.kind == "unilateral" or c.rubs for c in self.model.constraints)
 
     @property
     def asks_reactions(self) -> bool:
@@ -71,7 +86,15 @@ class Linked:
                 found[c.name] = _without_dust(place)
             if c.rate.name in stated or (follows and c.name not in independent):
                 found[c.rate.name] = _without_dust(rate)
-        return found
+        return found | self._decided_speeds(found)
+
+    def _decided_speeds(self, rates: Mapping[str, Any]) -> dict[str, Any]:
+        """Declared speeds whose formulas hold known rates only."""
+        unknown = {c.rate for c in self.model.coordinates if c.rate.name not in rates}
+        known = [s for s in self.model.speeds if not s.formula.free_symbols & unknown]
+        nodes = [self.links.kinematics.algebra.of(s.formula) for s in known]
+        values = linkage.values(self.links, nodes, self.report.initial.state, linkage.PRECISE)
+        return {s.name: _without_dust(v) for s, v in zip(known, values, strict=True)}
 
 
 def _without_dust(value: Any) -> Any:
@@ -86,12 +109,16 @@ class Formulation:
     name: str
     why: str
     machine: Machine
+    block: Block | None = None  # what gives the dependent speeds
 
 
 def linked(machine: Machine, report: Report) -> Linked:
     """The scene with its independent rows."""
     kept = tuple(r.name for r in machine.rows if r.name not in report.freedom.dropped)
-    return Linked(replace(machine, kept=kept), report)
+    found = Linked(replace(machine, kept=kept), report)
+    if not kept or found.touches:
+        return found
+    return Linked(augmented.regular(found.machine, (report.initial, *report.states)), report)
 
 
 def choose(scene: Linked, wanted: Wanted = AUTO) -> Formulation:
@@ -103,28 +130,42 @@ def choose(scene: Linked, wanted: Wanted = AUTO) -> Formulation:
     if wanted.baumgarte:
         return _stabilised(scene, wanted.baumgarte)
     if wanted.formulation != "auto":
-        return MAKERS[wanted.formulation](scene)
+        return _asked(scene, wanted.formulation)
+    if scene.model.simulation.formulation is not None:
+        found = _asked(scene, scene.model.simulation.formulation)
+        return replace(found, why="`simulate` of the spec asks for it")
     if scene.touches:
-        return replace(MAKERS["multiplier"](scene), why="contact and flight, over all coordinates")
+        modes = "stick and slip" if scene.model.guides else "contact and flight"
+        return _multiplier_because(scene, f"{modes}, over all coordinates")
     if scene.asks_reactions:
-        return replace(MAKERS["multiplier"](scene), why="reactions are asked for")
-    for name in ("minimal", "nullspace"):
-        try:
-            return MAKERS[name](scene)
-        except UsageError:
-            continue
-    return replace(MAKERS["multiplier"](scene), why="the rank of the constraints changes")
+        return _multiplier_because(scene, "reactions are asked for")
+    reduced = [f for f in available(scene) if f.name != "multiplier"]
+    return reduced[0] if reduced else _multiplier_because(scene, _why_not(scene))
+
+
+def _asked(scene: Linked, name: str) -> Formulation:
+    found = scene.made[name]
+    if isinstance(found, UsageError):
+        raise found
+    return found
+
+
+def _why_not(scene: Linked) -> str:
+    """Why nothing smaller than multipliers will do."""
+    reason = str(scene.made["nullspace"]).removeprefix("nullspace: ")
+    return reason.removesuffix("; use multiplier")
 
 
 def available(scene: Linked) -> tuple[Formulation, ...]:
     """Every formulation that exists for the scene."""
-    found = []
-    for maker in MAKERS.values():
-        try:
-            found.append(maker(scene))
-        except UsageError:
-            continue
-    return tuple(found)
+    return tuple(f for f in scene.made.values() if isinstance(f, Formulation))
+
+
+def _attempt(maker: Callable[[Linked], Formulation], scene: Linked) -> Formulation | UsageError:
+    try:
+        return maker(scene)
+    except UsageError as error:
+        return error
 
 
 def _stabilised(scene: Linked, alpha: Fraction) -> Formulation:
@@ -136,12 +177,20 @@ def _stabilised(scene: Linked, alpha: Fraction) -> Formulation:
 
 
 def _multiplier(scene: Linked) -> Formulation:
-    return Formulation("multiplier", "it was asked for", scene.machine)
+    return _multiplier_because(scene, "it was asked for")
+
+
+def _multiplier_because(scene: Linked, why: str) -> Formulation:
+    if scene.machine.weight:
+        weight = float(scene.machine.weight)
+        why += f"; M is singular where the constraints decide: M + {weight:g} J'J stands for it"
+    return Formulation("multiplier", why, scene.machine)
 
 
 def _refuse_free(scene: Linked, name: str) -> None:
     if scene.touches:
-        raise UsageError(f"{name}: a one-sided constraint needs all coordinates; use multiplier")
+        what = "a constraint with friction" if scene.model.guides else "a one-sided constraint"
+        raise UsageError(f"{name}: {what} needs all coordinates; use multiplier")
     if not scene.machine.kept:
         raise UsageError(f"{name}: no bilateral constraint reduces this scene; use multiplier")
     if not scene.report.freedom.basis.independent:
@@ -152,48 +201,64 @@ def _nullspace(scene: Linked) -> Formulation:
     _refuse_free(scene, "nullspace")
     if scene.report.freedom.singularities:
         raise UsageError("nullspace: the constraints lose rank inside `range`; use multiplier")
-    basis = scene.report.freedom.basis
-    _refuse_turning_block(scene)
-    at = _arguments(scene, scene.report.initial, basis.independent)
-    found = nullspace.derive(scene.model, basis.independent, scene.machine.kept, at)
-    why = f"constant rank; the speeds are the rates of {', '.join(basis.independent) or 'nothing'}"
-    return Formulation("nullspace", why, Machine(found.kinematics, (), found.pivots))
+    states = (scene.report.initial, *scene.report.states)
+    matrices = [augmented.matrices(scene.machine, s)[1].tolist() for s in states]
+    own = nullspace.declared(scene.model)
+    columns = _dependent_columns(scene, matrices)
+    _refuse_turning_block(matrices, columns, [own[j] for j in columns])
+    independent = [s.name for j, s in enumerate(own) if j not in columns]
+    at = _arguments(scene.report.initial)
+    found = nullspace.derive(scene.model, independent, scene.machine.kept, at)
+    what = "are" if scene.model.speeds else "are the rates of"
+    names = ", ".join(n.removesuffix("'") for n in independent)
+    why = f"constant rank; the speeds {what} {names}"
+    return Formulation("nullspace", why, *_reduced(scene, found))
 
 
-def _refuse_turning_block(scene: Linked) -> None:
-    """Dependent rates cannot be solved for where the determinant of their block changes sign."""
+def _reduced(scene: Linked, found: nullspace.Reduced) -> tuple[Machine, Block]:
+    """The machine over independent speeds, and the block that it is watched by."""
+    values = _values(scene, scene.report.initial)
+    bindings = found.kinematics.algebra.bindings
+    leaves = {n: values.get(s, 0.0) for s, n in bindings.items() if isinstance(n.datum, Read)}
+    block = compile_watch.block(found.determinant, found.pivots, leaves)
+    return Machine(found.kinematics, (), found.pivots), block
+
+
+def _dependent_columns(scene: Linked, matrices: Sequence[Matrix]) -> list[int]:
+    """The speeds to solve for: rates of dependent coordinates, or what serves best anywhere."""
+    if scene.model.speeds:
+        return virtual.dependent_columns(matrices)
     names = [c.name for c in scene.model.coordinates]
-    dependent = scene.report.freedom.basis.dependent
-    columns = [names.index(n) for n in dependent]
-    links = linkage.of(scene.machine)
-    kept = [i for i, row in enumerate(links.rows) if row.name in scene.machine.kept]
-    sizes = []
-    for state in (scene.report.initial, *scene.report.states):
-        rows = linkage.jacobian(links, state.state)
-        block = [[float(rows[i][j]) for j in columns] for i in kept]
-        sizes.append(float(np.linalg.det(np.array(block))))
+    return [names.index(n) for n in scene.report.freedom.basis.dependent]
+
+
+def _refuse_turning_block(
+    matrices: Sequence[Matrix], columns: Sequence[int], dependent: Sequence[Speed]
+) -> None:
+    """Dependent rates cannot be solved for where the determinant of their block changes sign."""
+    blocks = ([[row[j] for j in columns] for row in m] for m in matrices)
+    sizes = [float(np.linalg.det(np.array(block))) for block in blocks]
     if min(sizes) * max(sizes) <= 0:
+        names = ", ".join(s.name.removesuffix("'") for s in dependent)
         raise UsageError(
-            f"nullspace: W-PIVOT: {', '.join(dependent)} cannot stay dependent over the range; "
+            f"nullspace: W-PIVOT: {names} cannot stay dependent over the range; "
             "give other coordinates `role: free`, narrow the range, or use multiplier"
         )
 
 
-def _arguments(
-    scene: Linked, state: Admissible, independent: Sequence[str]
-) -> dict[str, list[float]]:
-    """The arguments of a program over all coordinates and the independent rates."""
-    names = [c.name for c in scene.model.coordinates]
-    rates = [state.state.rates[names.index(n)] for n in names if n in independent]
+def _arguments(state: Admissible) -> dict[str, list[float]]:
+    """The arguments of a program, without speeds."""
     return {
         "time": [float(state.state.time)],
-        "state": [float(v) for v in (*state.state.coordinates, *rates)],
+        "state": [float(v) for v in state.state.coordinates],
         "parameters": [float(v) for v in state.state.parameters],
     }
 
 
 def _minimal(scene: Linked) -> Formulation:
     _refuse_free(scene, "minimal")
+    if scene.model.speeds:
+        raise UsageError("minimal: the declared speeds move all coordinates; use nullspace")
     if any(c.kind == "nonholonomic" for c in scene.model.constraints):
         raise UsageError("minimal: a nonholonomic constraint eliminates no coordinate")
     found = _eliminations(scene)
@@ -201,13 +266,15 @@ def _minimal(scene: Linked) -> Formulation:
         chosen = minimal_graph.choose(found, _values(scene, scene.report.initial))
     except ValueError as error:
         raise UsageError(f"minimal: {error}") from error
-    _refuse_dead_points(scene, found, chosen)
+    _refuse_dead_points(scene, chosen)
     names = ", ".join(c.coordinate.name for c in chosen)
     rooted = [c for c in chosen if c.discriminant is not None]
     branches = ", ".join(f"{c.coordinate.name}: {minimal.BRANCHES[c.branch]:+d}" for c in rooted)
     tail = f", branch {branches}" if branches else ""
-    machine = Machine(minimal_graph.kinematics(scene.model, chosen))
-    return Formulation("minimal", f"{names} eliminated in closed form{tail}", machine)
+    values = _values(scene, scene.report.initial)
+    reduced = minimal_graph.derive(scene.model, chosen, scene.machine.kept, values)
+    why = f"{names} eliminated in closed form{tail}"
+    return Formulation("minimal", why, *_reduced(scene, reduced))
 
 
 def _eliminations(scene: Linked) -> tuple[Elimination, ...]:
@@ -232,22 +299,23 @@ def _eliminations(scene: Linked) -> tuple[Elimination, ...]:
     return found
 
 
-def _refuse_dead_points(
-    scene: Linked, found: Sequence[Elimination], chosen: Sequence[Chosen]
-) -> None:
+def _refuse_dead_points(scene: Linked, chosen: Sequence[Chosen]) -> None:
     """A formula whose root nearly vanishes somewhere in the range is not safe."""
     chance = random.Random(scene.model.name)
-    sizes: dict[str, list[float]] = {e.coordinate.name: [] for e in found if e.discriminant}
+    formulas = [(c.coordinate, measure(c.formula)) for c in chosen]
+    limits = {
+        c.coordinate.name: measure(c.discriminant) for c in chosen if c.discriminant is not None
+    }
+    sizes: dict[str, list[float]] = {name: [] for name in limits}
+    start, spans = _values(scene, scene.report.initial), _spans(scene)
     for _ in range(DEAD_POINT_SAMPLES):
-        values = _values(scene, scene.report.initial) | _independent(scene, chance)
-        for elimination, link in zip(found, chosen, strict=True):
-            if elimination.discriminant is not None:
-                size = _number(elimination.discriminant, values)
-                sizes[elimination.coordinate.name].append(size)
-                if size < 0:
+        values = start | {symbol: chance.uniform(*span) for symbol, span in spans.items()}
+        for coordinate, formula in formulas:
+            if coordinate.name in limits:
+                sizes[coordinate.name].append(limits[coordinate.name](values))
+                if sizes[coordinate.name][-1] < 0:
                     break
-            formula = elimination.branches[link.branch]
-            values[elimination.coordinate.symbol] = _number(formula, values)
+            values[coordinate.symbol] = formula(values)
     for name, seen in sizes.items():
         if min(seen) < LEAST_DISCRIMINANT * max(abs(s) for s in seen):
             raise UsageError(
@@ -256,22 +324,19 @@ def _refuse_dead_points(
             )
 
 
-def _independent(scene: Linked, chance: random.Random) -> dict[Any, float]:
-    """Random independent coordinates: in the declared range, else between the sampled states."""
+def _spans(scene: Linked) -> dict[Any, tuple[float, float]]:
+    """Where independent coordinates are: in the declared range, else between sampled states."""
     names = [c.name for c in scene.model.coordinates]
-    states = [scene.report.initial, *scene.report.states]
-    parameters = scene.report.initial.state.parameters
-    drawn: dict[Any, float] = {}
+    states = [scene.report.initial.state, *(s.state for s in scene.report.states)]
+    found: dict[Any, tuple[float, float]] = {}
     for name in scene.report.freedom.basis.independent:
         j = names.index(name)
-        ends = [float(s.state.coordinates[j]) for s in states]
+        ends: Sequence[Any] = [s.coordinates[j] for s in states]
         if name in scene.model.range:
-            ends = [
-                float(linkage.constant(linkage.of(scene.machine), v, parameters))
-                for v in scene.model.range[name]
-            ]
-        drawn[scene.model.coordinates[j].symbol] = chance.uniform(min(ends), max(ends))
-    return drawn
+            parameters = states[0].parameters
+            ends = [linkage.constant(scene.links, v, parameters) for v in scene.model.range[name]]
+        found[scene.model.coordinates[j].symbol] = float(min(ends)), float(max(ends))
+    return found
 
 
 def _values(scene: Linked, state: Admissible) -> dict[Any, float]:
@@ -288,14 +353,6 @@ def _values(scene: Linked, state: Admissible) -> dict[Any, float]:
 
 def _known(node: Node, leaves: Mapping[Node, float]) -> bool:
     return all(a in leaves for a in below([node]) if a.operator == "read")
-
-
-def _number(form: Form, values: Mapping[Any, float]) -> float:
-    """The value of a form, infinite where it is not defined."""
-    try:
-        return float(Evaluation(values, float, lambda n, *a: FLOAT.functions[n](*a)).of(form))
-    except (ValueError, ZeroDivisionError):
-        return float("inf")
 
 
 MAKERS: dict[str, Callable[[Linked], Formulation]] = {

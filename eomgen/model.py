@@ -244,6 +244,11 @@ class Constraint:
     friction: sp.Expr | None = None  # Coulomb's coefficient, not negative
     description: Description = Description()
 
+    @property
+    def rubs(self) -> bool:
+        """Whether there is friction; a coefficient that is written 0 is none."""
+        return self.friction is not None and self.friction != 0
+
 
 @dataclass(frozen=True)
 class Energy:
@@ -288,6 +293,15 @@ class Output:
 
 
 @dataclass(frozen=True)
+class Simulation:
+    """How the author wants the scene to be run; None where nothing is said."""
+
+    method: str | None = None
+    step: sp.Expr | None = None  # s
+    formulation: str | None = None
+
+
+@dataclass(frozen=True)
 class Model:
     """One mechanical system."""
 
@@ -315,5 +329,11 @@ class Model:
     range: Mapping[str, tuple[sp.Expr, sp.Expr]] = field(default_factory=dict)
     outputs: tuple[Output, ...] = ()
     expect: Expectation = Expectation()
+    simulation: Simulation = Simulation()
     with_units: bool = False  # the spec states units, so every formula is dimension-checked
     digest: str = ""  # sha256 of the spec's text
+
+    @property
+    def guides(self) -> tuple[Constraint, ...]:
+        """Two-sided constraints with friction: the motion is that of a mode, stick or slip."""
+        return tuple(c for c in self.constraints if c.rubs and c.kind != "unilateral")

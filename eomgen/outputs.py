@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from eomgen.errors import EomgenError, UsageError
+from eomgen.integrators.steps import Steps
 from eomgen.render.notes import Notes
 from eomgen.render.targets import TARGETS, Named, render
 from eomgen.render.templating import environment
@@ -26,6 +27,8 @@ class Wish:
     templates: Path | None = None
     steps: bool = False
     functions: tuple[str, ...] = ()  # of C and Python; (): the standard ones
+    integrators: tuple[str, ...] = ()
+    compensated: bool = False
 
 
 def _notes(study: Study, wish: Wish) -> Named:
@@ -39,17 +42,27 @@ def _notes(study: Study, wish: Wish) -> Named:
 
 
 def _program(study: Study, wish: Wish) -> Named:
+    steps = _steps(study, wish) if wish.integrators else None
+    program = study.program if steps is None else steps.program
     if not wish.functions:
-        return study.program
+        return program
     from eomgen.functions import table
 
-    return table.select(study.program, study.compiled, wish.functions)
+    chosen = table.select(program, study.compiled, wish.functions)
+    return chosen if steps is None else steps.completing(chosen)
+
+
+def _steps(study: Study, wish: Wish) -> Steps:
+    from eomgen import stepping
+
+    return stepping.of(study, wish.integrators, compensated=wish.compensated)
 
 
 SUBJECTS: dict[str, Callable[[Study, Wish], Named]] = {
     "latex": _notes,
     "text": _notes,
     "c": _program,
+    "c-steps": _steps,
     "python": _program,
 }
 
@@ -74,6 +87,9 @@ WORDS = {
         "checked": "checked",
         "routes": "Lagrange = Newton-Euler",
         "energies": "Lagrange in closed form = Lagrange on the graph",
+        "recursion": "Lagrange by differentiation = recursive Newton-Euler",
+        "projection": "d'Alembert = recursive Newton-Euler",
+        "identity": "inverse after forward dynamics = identity below {error}",
         "proven": "identical in exact arithmetic and",
         "states": "at {states} random states, worst relative error below {error}",
         "digits": " (in {digits} digits)",
@@ -86,6 +102,9 @@ WORDS = {
         "checked": "comprobado",
         "routes": "Lagrange = Newton-Euler",
         "energies": "Lagrange en forma cerrada = Lagrange en el grafo",
+        "recursion": "Lagrange por derivación = Newton-Euler recursivo",
+        "projection": "d'Alembert = Newton-Euler recursivo",
+        "identity": "dinámica inversa tras la directa = identidad hasta {error}",
         "proven": "idénticas en aritmética exacta y",
         "states": "en {states} estados aleatorios, peor error relativo menor que {error}",
         "digits": " (con {digits} dígitos)",
@@ -103,11 +122,12 @@ def check_line(report: Report, language: str) -> str:
     states = words["states"].format(states=found.states, error=bound(found.error))
     digits = words["digits"].format(digits=found.digits) if found.digits > 16 else ""
     proven = f"{words['proven']} " if found.proven else ""
-    routes = words["routes"] if report.projected else words["energies"]
     parts = [
-        f"{routes}, {proven}{states}{digits}",
+        f"{words[report.routes]}, {proven}{states}{digits}",
         words["power"].format(error=bound(report.power)),
     ]
+    if report.identity is not None:
+        parts.append(words["identity"].format(error=bound(report.identity)))
     if len(report.formulations) > 1:
         parts.append(words["formulations"].format(names=" = ".join(report.formulations)))
     if report.terms:
@@ -130,7 +150,8 @@ def summary(spec: str, study: Study, format_: str) -> str:
 def _text_summary(spec: str, study: Study) -> str:
     count = study.freedom
     freedom = f"{count} degree{'s' if count != 1 else ''} of freedom"
-    said = "; ".join([freedom, *_linked_words(study), check_line(study.report, "en")])
+    words = [freedom, *_linked_words(study), *_engine_words(study)]
+    said = "; ".join([*words, check_line(study.report, "en")])
     return "\n    ".join([f"{spec}: {said}", *_initial_words(study), *study.report.warnings])
 
 
@@ -141,6 +162,11 @@ def _initial_words(study: Study) -> tuple[str, ...]:
     from eomgen.analysis.admissible import describe
 
     return describe(study.machine, study.links.scene.report.initial)
+
+
+def _engine_words(study: Study) -> list[str]:
+    """How accelerations are computed."""
+    return [f"engine: {study.engine}"] if study.engine else []
 
 
 def _linked_words(study: Study) -> list[str]:
@@ -163,6 +189,7 @@ def _json_summary(spec: str, study: Study) -> str:
             "power_balance": report.power,
             "terms": report.terms,
             "claims": report.claims,
+            "engine": study.engine,
             **_warnings(study),
             **_linked_json(study),
         }

@@ -135,6 +135,7 @@ class Program:
     parameters: tuple[Variable, ...]
     outputs: tuple[Variable, ...]
     functions: tuple[Function, ...]
+    engine: str = ""  # how accelerations are found, and what that costs
 
     def function(self, name: str) -> Function:
         """The function of that name."""

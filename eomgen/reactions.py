@@ -30,7 +30,7 @@ def of(scene: Linked) -> tuple[Reaction, ...]:
 
 def _reaction(scene: Linked, constraint: Constraint) -> Reaction:
     assert constraint.reaction
-    rows = [r for r in scene.machine.rows if r.constraint is constraint]
+    rows = [r for r in scene.links.rows if r.constraint.name == constraint.name]
     if constraint.points is not None:
         # C = Cr: the multipliers are the force on C, its opposite acts on Cr
         force = tuple((axis, ((r.name, None),)) for axis, r in zip(AXES, rows, strict=False))
@@ -51,7 +51,7 @@ def _factors(rows: list[Row[Node]], j: int) -> tuple[tuple[str, Node | None], ..
 
 def _body_of(scene: Linked, rows: list[Row[Node]]) -> tuple[str, Mapping[str, str]] | None:
     """(body, coordinate -> axis) where the rows hold Cartesian coordinates of one body only."""
-    kinematics = scene.machine.kinematics
+    kinematics = scene.links.kinematics
     zero = rows[0].rate.graph.zero
     leaves = {kinematics.algebra.of(c.symbol): c.name for c in scene.model.coordinates}
     used = {

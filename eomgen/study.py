@@ -11,7 +11,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from eomgen import compile
-from eomgen.checks import agreement, dimensions, expectations, gimbal, mass, power, samples
+from eomgen.algebra.normal import TooLarge
+from eomgen.checks import (
+    agreement,
+    dimensions,
+    expectations,
+    gimbal,
+    mass,
+    power,
+    recursion,
+    samples,
+)
 from eomgen.mechanics import lagrange, speeds
 from eomgen.mechanics.equations import Derivation
 from eomgen.model import Model
@@ -23,6 +33,10 @@ if TYPE_CHECKING:
     from eomgen.study_linked import LinkedStudy
 
 
+# coordinates; above, a scene is proven on the graph unless notes are asked for
+LARGEST_CLOSED = {"line": 40, "plane": 16, "solid": 6}
+
+
 @dataclass(frozen=True)
 class Report:
     """What was checked, and how well it held."""
@@ -31,9 +45,10 @@ class Report:
     power: float  # worst relative error of the power balance
     terms: int  # whose dimension was checked; 0 where the spec states no units
     claims: int  # of the author, all found to hold
-    projected: bool  # bodies were projected; else both routes start from the author's energies
+    routes: str  # which two derivations were compared, a key of `outputs.WORDS`
     formulations: tuple[str, ...] = ()  # of a linked scene, found to agree
     warnings: tuple[str, ...] = ()  # what is true and yet may surprise
+    identity: float | None = None  # of inverse after forward dynamics, where that was checked
 
 
 @dataclass(frozen=True)
@@ -41,11 +56,22 @@ class Study:
     """A scene that was derived twice and found consistent."""
 
     model: Model
-    derivation: Derivation
+    closed: Derivation | None  # None: it is too large for a closed form, and nobody asked for one
     machine: compile.Machine
     program: Program
     report: Report
     links: LinkedStudy | None = None  # where the scene has constraints
+
+    @property
+    def derivation(self) -> Derivation:
+        """The closed form, for whoever asked for notes."""
+        assert self.closed is not None
+        return self.closed
+
+    @property
+    def engine(self) -> str:
+        """How the program finds accelerations, where it goes over a tree of joints."""
+        return self.program.engine
 
     @property
     def compiled(self) -> compile.Machine:
@@ -78,10 +104,53 @@ def of_model(model: Model, wanted: Wanted = AUTO) -> Study:
         from eomgen import study_linked
 
         return _linked(study_linked.of_model(model, wanted))
-    derivation = lagrange.derive(model)
     machine = compile.machine_of(model)
-    report = checked(derivation, machine)
+    derivation = _closed(machine, wanted)
+    report = recursed(machine) if derivation is None else checked(derivation, machine)
     return Study(model, derivation, machine, compile.program(machine), report)
+
+
+def _closed(machine: compile.Machine, wanted: Wanted) -> Derivation | None:
+    """The closed form; None where the recursion can be proven instead and nobody reads notes.
+
+    Raises:
+        TooLarge: it was asked for, or there is no recursion.
+    """
+    model = machine.model
+    needed = wanted.notes or machine.engine is None
+    if not needed and len(model.coordinates) > LARGEST_CLOSED[model.space]:
+        return None
+    try:
+        return lagrange.derive(model)
+    except TooLarge:
+        if needed:
+            raise
+        return None
+
+
+def recursed(machine: compile.Machine) -> Report:
+    """The report of a scene without a closed form.
+
+    Raises:
+        CheckError: one of the checks fails.
+    """
+    engine, drawn = machine.engine, samples.draw(machine.model)
+    assert engine is not None
+    recursion.pivots(machine, engine, drawn)
+    return Report(
+        terms=0,
+        agreement=recursion.compare(machine, engine, drawn),
+        power=power.balance(machine, drawn),
+        claims=expectations.check(machine, drawn),
+        routes="projection" if machine.model.speeds else "recursion",
+        warnings=gimbal.warnings(machine.model),
+        identity=recursion.identity(machine, engine, drawn),
+    )
+
+
+def _routes(model: Model) -> str:
+    """Bodies were projected; else both routes start from the author's energies."""
+    return "routes" if model.bodies else "energies"
 
 
 def machine_of(text: str | bytes, file: str, wanted: Wanted = AUTO) -> compile.Machine:
@@ -101,7 +170,7 @@ def _linked(links: LinkedStudy) -> Study:
         power=links.power,
         terms=links.terms,
         claims=links.claims,
-        projected=bool(links.derivation.model.bodies),
+        routes=_routes(links.derivation.model),
         formulations=links.formulations,
         warnings=gimbal.warnings(links.derivation.model),
     )
@@ -122,6 +191,6 @@ def checked(derivation: Derivation, machine: compile.Machine) -> Report:
         agreement=agreement.compare(derivation, machine, drawn),
         power=power.balance(machine, drawn),
         claims=expectations.check(machine, drawn),
-        projected=bool(derivation.model.bodies),
+        routes=_routes(derivation.model),
         warnings=gimbal.warnings(derivation.model),
     )

@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from eomgen import compile, compile_contacts, compile_linked, formulation
+from eomgen import compile, compile_contacts, compile_linked, compile_watch, formulation
 from eomgen.analysis import cards
 from eomgen.checks import agreement, dimensions, expectations, links, mass, power, samples
 from eomgen.compile import Machine
@@ -110,8 +110,25 @@ def program(scene: Linked, chosen: Formulation) -> Program:
         made,
         coordinates=_initialised(made.coordinates, values),
         speeds=_initialised(made.speeds, values),
-        functions=made.functions + EXTRAS[chosen.name](scene, chosen),
+        functions=_moving(
+            scene, made.functions + EXTRAS[chosen.name](scene, chosen) + _watch(chosen)
+        ),
     )
+
+
+def _watch(chosen: Formulation) -> tuple[Function, ...]:
+    found = compile_watch.function(chosen.machine, chosen.block)
+    return () if found is None else (found,)
+
+
+def _moving(scene: Linked, functions: tuple[Function, ...]) -> tuple[Function, ...]:
+    """Without the accelerations that a rough guide has in no mode: those without its friction."""
+    if not scene.model.guides:
+        return functions
+    smooth = {"accelerations", "state_derivative", "multipliers"}
+    if compile.holds_motion(scene.model):
+        smooth.add("outputs")
+    return tuple(f for f in functions if f.name not in smooth)
 
 
 def _initialised(variables: tuple[Variable, ...], values: dict[str, Any]) -> tuple[Variable, ...]:

@@ -1,4 +1,4 @@
-"""What the user wants of a linked scene: a formulation, and stabilised rows if asked for."""
+"""What the user wants: notes, and of a linked scene a formulation and stabilised rows."""
 
 from __future__ import annotations
 
@@ -13,10 +13,14 @@ LARGEST = Fraction(1, 5)  # alpha * h: above, Baumgarte's terms cost the integra
 
 @dataclass(frozen=True)
 class Wanted:
-    """A formulation of `NAMES`; baumgarte: alpha [1/s], zero for none."""
+    """A formulation of `NAMES`; baumgarte: alpha [1/s], zero for none.
+
+    notes: people will read the closed form; else a scene too large for one needs none.
+    """
 
     formulation: str = "auto"
     baumgarte: Fraction = Fraction(0)
+    notes: bool = False
 
 
 AUTO = Wanted()

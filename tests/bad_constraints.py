@@ -226,13 +226,13 @@ BAD_CONSTRAINTS = (
     ),
     Bad("guess in an initial map", linked("guess: {x", "gues: {x"), "25:39 E104"),
     Bad(
-        "speeds beside constraints",
-        ROLLING_DISC + "speeds: {a: x', b: y', c: theta', d: phi'}\n",
-        "21:1 E602",
+        "speeds beside a gap",
+        ROPE + "speeds: {a: x', b: y'}\n",
+        "10:1 E602",
     ),
     Bad(
         "speeds and a faulty constraint",
-        constrained("holonomic: phi") + "speeds: {u: phi'}\n",
+        constrained("holonomic: phi, friction: 1") + "speeds: {u: phi'}\n",
         "11:33 E205, 12:1 E602",
     ),
     # hostile

@@ -29,6 +29,16 @@ HAND = f"""  <link name="hand"><inertial>{MASS}{INERTIA}</inertial></link>
 """
 
 
+def chain(links, name):
+    """A robot of so many links in a row."""
+    one = '<link name="{1}"><inertial>{2}{3}</inertial></link><joint name="{1}" type="floating">'
+    one += '<parent link="{0}"/><child link="{1}"/><origin xyz="1 2 3" rpy="1 2 3"/></joint>'
+    names = ["base", *(f"{name}{i}" for i in range(links))]
+    pairs = zip(names, names[1:], strict=False)
+    parts = (one.format(before, after, MASS, INERTIA) for before, after in pairs)
+    return f'<robot><link name="base"/>{"".join(parts)}</robot>'
+
+
 class Bad(NamedTuple):
     """A file and its faults as `line:column code`, all of them, in order."""
 
@@ -84,6 +94,8 @@ BAD = (
     Bad("deep", "<robot>" + "<a>" * 100_000, "1:185 E702"),
     Bad("too many", "<robot>" + "<a/>" * 120_000 + "</robot>", "1:400004 E702"),
     Bad("too many links", "<robot>" + "<link name='a'/>" * 401 + "</robot>", "1:1 E702"),
+    Bad("too many values for a spec", chain(399, "a"), "1:1 E702"),
+    Bad("too many bytes for a spec", chain(399, "a_link_with_a_long_name_"), "1:1 E702"),
     Bad("another root", BASE.replace("robot", "model"), "2:1 E703"),
     Bad("xacro", changed("<link", "<xacro:include/><link"), "2:1 E703"),
     Bad("misspelt inertial", BASE.replace("inertial>", "inertail>"), "5:5 E704"),

@@ -1,5 +1,6 @@
 """Fixtures of several test files."""
 
+import os
 import sys
 from dataclasses import dataclass
 from functools import cache
@@ -11,6 +12,7 @@ from reference import stem, wanted
 from scenes import SHIPPED
 
 from eomgen.cli import main
+from eomgen.numerics.cache import VARIABLE
 
 TARGETS = ("-t", "latex", "-t", "c", "-t", "python", "-t", "text")
 
@@ -32,6 +34,18 @@ def generated(tmp_path_factory):
         return folder
 
     return folder_of
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _own_cache(tmp_path_factory):
+    """Compiled libraries of this session, shared by its processes, not the user's."""
+    base = tmp_path_factory.getbasetemp()
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    before = os.environ.get(VARIABLE)
+    os.environ[VARIABLE] = before or str(shared / "libraries")
+    yield
+    if before is None:
+        del os.environ[VARIABLE]
 
 
 @dataclass(frozen=True)

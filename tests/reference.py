@@ -111,7 +111,7 @@ def beside(case, function):
         # rolling at a constant speed: h cancels, and no force is applied
         return (*BALANCE, "mass_matrix") if case in LINKED_CASES else BALANCE
     if function.startswith("accelerations_"):  # none while a contact sticks
-        return (function, "accelerations")
+        return tuple(n for n in exact(case) if n.startswith("accelerations"))
     return (function,)
 
 

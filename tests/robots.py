@@ -17,8 +17,8 @@ import numpy as np
 import sympy as sp
 
 from eomgen import spec, urdf
-from eomgen.algebra.assemble import assemble
 from eomgen.compile import machine_of, program
+from eomgen.functions import table
 from eomgen.interpreter import FLOAT, run
 from eomgen.mechanics import speeds
 from eomgen.model import Place, Point
@@ -236,18 +236,8 @@ class Robot:
     def functions(self):
         """Our functions, and the Jacobian of the probe."""
         machine = machine_of(self.model)
-        compiled = program(machine)
-        kinematics = machine.kinematics
-        one = kinematics.algebra.number(1)
-        unknown = speeds.symbols(self.model)
-        partials = [
-            kinematics.algebra.along(v, {u: one})
-            for v in kinematics.velocity("probe")
-            for u in unknown
-        ]
-        names = ("mass_matrix", "bias", "generalized_forces", "accelerations")
-        jacobian = assemble("jacobian", "", (3, len(unknown)), partials)
-        return {name: compiled.function(name) for name in names} | {"jacobian": jacobian}
+        names = ("mass_matrix", "bias", "generalized_forces", "accelerations", "jacobian_of:probe")
+        return table.select(program(machine), machine, names).functions
 
     def ours(self, q, v, forces):
         """Our answer."""
@@ -258,15 +248,12 @@ class Robot:
             "parameters": [float(p.value) for p in self.model.parameters],
         }
 
-        def at(name, inputs=inputs):
-            return np.array(run(self.functions[name], given | {"inputs": inputs}, FLOAT))
-
-        return Answer(
-            at("mass_matrix").reshape(n, n),
-            at("bias") - at("generalized_forces", 0 * inputs),
-            at("accelerations"),
-            at("jacobian").reshape(3, n),
+        mass, bias, driven, accelerations, jacobian = (
+            np.array(run(function, given | {"inputs": inputs}, FLOAT))
+            for function in self.functions
         )
+        bias = bias - (driven - forces)
+        return Answer(mass.reshape(n, n), bias, accelerations, jacobian.reshape(3, n))
 
     def projected(self, they, q, v, forces):
         """Another program's answer in our coordinates.

@@ -122,6 +122,14 @@ def test_one_of_a_continuum_is_no_assembly_mode() -> None:
     assert found.others == ()
 
 
+def test_a_double_solution_is_alone_too() -> None:
+    """y = 0 is a double root of y^2 (y - x), as at a dead point, but no continuum."""
+    known = {"initial": {"x": R(1)}, "guess": {"y": R(0)}}
+    found = admissible.positions(machine("x y", {"c": (HOLONOMIC, y**2 * (y - x))}, **known))
+    assert [float(v) for v in found.state.coordinates] == [1, 0]
+    assert [[float(v) for v in o] for o in found.others] == [[1, 1]]
+
+
 def test_rates_are_the_least_change_that_satisfies_all_rows() -> None:
     scene = machine("x y", {"c": (RATES, dx + dy - 2)})
     rates = admissible.positions(scene).state.rates

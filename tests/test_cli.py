@@ -17,7 +17,8 @@ from eomgen import __version__, study
 from eomgen.cli import commands
 
 COMMANDS = [
-    "check", "derive", "evaluate", "examples", "generate", "new", "schema", "statics", "templates",
+    "chart", "check", "derive", "evaluate", "examples", "generate", "import", "new", "regressor", "schema",
+    "simulate", "statics", "templates",
 ]  # fmt: skip
 EQUATION = "m l² φ″ + d φ′ + m l g sin φ = τ"
 STATE = {"coordinates": {"phi": "0.1"}, "rates": {"phi": 2}, "inputs": {"tau": 0.5}}
@@ -50,7 +51,7 @@ def test_help_explains_every_option_and_gives_examples(call, command, flag):
 @pytest.mark.parametrize("command", [None, *COMMANDS])
 def test_the_examples_of_the_help_are_command_lines(command):
     epilog = (commands if command is None else commands.commands[command]).epilog
-    examples = re.findall(r"^  eomgen (\w+) ?([^<>\n]*)", epilog, re.MULTILINE)
+    examples = re.findall(r"^  eomgen (\w+) ?([^<>|\n]*)", epilog, re.MULTILINE)
     assert examples
     for name, words in examples:
         commands.commands[name].make_context(name, words.split())
@@ -224,7 +225,8 @@ def test_check_goes_on_after_a_bad_spec_and_answers_the_worst(call):
     said = call("check", "wrong.yaml", "false.yaml", "missing.yaml", "good.yaml")
     assert said.code == 2
     (line,) = said.output.splitlines()
-    assert line.startswith("good.yaml: 1 degree of freedom; checked: Lagrange = Newton-Euler")
+    assert line.startswith("good.yaml: 1 degree of freedom; engine: articulated bodies, ")
+    assert "; checked: Lagrange = Newton-Euler" in line
     assert "dimensions of" in line
     for name in ("wrong.yaml:4:1:", "false.yaml: error: expect", "missing.yaml: error: cannot"):
         assert name in said.errors

@@ -24,7 +24,8 @@ def test_an_imported_robot_is_checked_and_generated(call):
     made = call("import", "-", "-o", "arm.yaml", stdin=BASE)
     assert made.output.split() == ["arm.yaml", "eomgen.schema.json"]
     said = call("check", "arm.yaml")
-    assert "1 degree of freedom; checked: Lagrange = Newton-Euler" in said.output
+    assert "1 degree of freedom; engine: articulated bodies" in said.output
+    assert "; checked: Lagrange = Newton-Euler" in said.output
     assert call("generate", "arm.yaml", "-t", "c", "-o", "out").code == 0
 
 
@@ -72,9 +73,10 @@ def test_faults_look_as_asked(call):
     ("words", "said"),
     [
         (("nowhere.urdf",), "cannot be read"),
-        ((PENDULUM, "--within", "much"), "'much' is not a decimal number"),
-        ((PENDULUM, "--within", "1"), "give 0 to 0.01 [rad]"),
-        ((PENDULUM, "--within", "-1e-9"), "give 0 to 0.01 [rad]"),
+        ((PENDULUM, "--round-angles", "--within", "much"), "'much' is not a decimal number"),
+        ((PENDULUM, "--round-angles", "--within", "1"), "give 0 to 0.01 [rad]"),
+        ((PENDULUM, "--round-angles", "--within", "-1e-9"), "give 0 to 0.01 [rad]"),
+        ((PENDULUM, "--within", "1e-9"), "--within goes with --round-angles"),
         ((PENDULUM, "-o", "file/arm.yaml"), "choose another folder"),
     ],
 )
@@ -93,7 +95,6 @@ TURNED = changed('<origin xyz="0 0 1"/>', '<origin rpy="1.5708 0 0"/>')
     ("options", "made"),
     [
         ((), "[x, 1.5708]"),
-        (("--within", "1e-5"), "[x, 1.5708]"),
         (("--round-angles",), "[x, 1.5708]"),
         (("--round-angles", "--within", "1e-5"), "[x, pi/2]"),
         (("--floating-base",), "{quaternion: e_base}"),

@@ -109,9 +109,13 @@ def linked_results(name: str, using: str, digits: int) -> list[evaluate.Result]:
 def leaves(values: dict[str, Any], path: tuple[str, ...] = ()) -> Iterator[tuple[Any, Any]]:
     """The numbers of nested groups, each with its path; words are passed over."""
     for name, value in values.items():
+        if name in ("holds", "because", "words"):
+            continue
+        if isinstance(value, list):
+            value = {str(place): v for place, v in enumerate(value)}
         if isinstance(value, dict):
             yield from leaves(value, (*path, name))
-        elif name not in ("on", "meaning"):
+        elif not isinstance(value, bool) and name not in ("on", "meaning", "must_be", "words"):
             yield (*path, name), mpmath.mpf(value)
 
 
@@ -165,9 +169,10 @@ def test_accelerations_keep_to_the_constraints(name: str) -> None:
             "inputs": [arithmetic.number(v[i]) for v in drawn.inputs],
             "parameters": list(state.parameters),
         }
-        values = {n: given[n.datum.argument][n.datum.index] for n in found.machine.leaves}
+        links = found.links.scene.links  # over q', whatever speeds are declared
+        values = {n: given[n.datum.argument][n.datum.index] for n in links.leaves}
         accelerations = [arithmetic.number(v) for v in result["accelerations"].values()]
-        for row in found.machine.rows:
+        for row in links.rows:
             *slopes, gamma = node_values([*row.jacobian, row.gamma], values, arithmetic)
             terms = [s * a for s, a in zip(slopes, accelerations, strict=True)]
             size = sum(map(abs, terms)) + abs(gamma) + 1

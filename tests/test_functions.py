@@ -7,6 +7,7 @@ import pytest
 from functions_of import (
     JACOBIANS,
     PRECISE,
+    STEP,
     compiled,
     difference,
     function,
@@ -17,17 +18,19 @@ from functions_of import (
     value,
 )
 from reference import CASES, stem, written
-from scenes import SLOW
+from scenes import SLOW, study_of
 
-from eomgen import compile, interpreter
+from eomgen import compile, formulation, interpreter
 from eomgen.algebra import derive, jacobian
 from eomgen.algebra.arithmetic import FLOAT, evaluate
 from eomgen.algebra.elementary import absolute, maximum, minimum, sign
 from eomgen.algebra.graph import Graph, below, sqrt
+from eomgen.checks import samples
 from eomgen.errors import UsageError
 from eomgen.functions import places, sensitivity, table
 from eomgen.program import Solve
 from eomgen.spec import read
+from eomgen.wanted import wanted
 
 LONG = {"andrews_squeezer", "andrews_squeezer-minimal", *(c for c in CASES if stem(c) in SLOW)}
 each_case = pytest.mark.parametrize(
@@ -235,8 +238,7 @@ def test_greek_places_have_functions_of_their_own():
 def test_a_scene_that_is_solved_in_a_loop_has_all_columns_from_one_factorisation():
     case, (given, *_) = "long_chain", states("long_chain")
     found = function(case, "state_jacobian")
-    motion_first, columns = [s for s in found.statements if isinstance(s, Solve)]
-    assert len(motion_first.right) == motion_first.size == columns.size
+    (columns,) = [s for s in found.statements if isinstance(s, Solve)]
     assert len(columns.right) == columns.size * 2 * columns.size
     expected = slopes(case, "state_derivative", given, "state")
     assert difference(value(case, "state_jacobian", given), expected) < 1e-20
@@ -288,3 +290,25 @@ MISTAKES = (
 def test_a_function_that_is_not_there_is_refused(case, name, words):
     with pytest.raises(UsageError, match=re.escape(words)):
         select(case, name)
+
+
+@pytest.mark.parametrize("case", ["four_bar", "rolling_disc_tilting"])
+def test_stabilised_rows_are_in_the_jacobian(case):
+    """Off the constraints, where Baumgarte's terms act."""
+    scene = study_of(case).links.scene
+    machine = formulation.choose(scene, wanted("auto", "2", "0.01")).machine
+    program = compile.program(machine)
+    (found,) = table.select(program, machine, ["state_jacobian"]).functions
+    drawn = samples.draw(machine.model, 1).arguments()
+    given = {name: [PRECISE.number(v) for (v,) in columns] for name, columns in drawn.items()}
+
+    def at(index, move):
+        state = [v + move * (i == index) for i, v in enumerate(given["state"])]
+        whole = {**given, "state": state}
+        results = interpreter.run(program.function("state_derivative"), whole, PRECISE)
+        return np.array(results, dtype=object)
+
+    size = range(len(given["state"]))
+    expected = [(at(i, STEP) - at(i, -STEP)) / (2 * STEP) for i in size]
+    values = np.reshape(interpreter.run(found, given, PRECISE), found.shape)
+    assert difference(values, np.array(expected, dtype=object).T) < 1e-20

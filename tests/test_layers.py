@@ -22,11 +22,14 @@ ALLOWED: dict[str, set[str]] = {
     "compile_linked": RECORDS | {"algebra", "mechanics", "compile"},
     "compile_reactions": RECORDS | {"algebra", "mechanics", "compile"},
     "compile_contacts": RECORDS | {"algebra", "mechanics", "compile"},
+    "compile_watch": RECORDS | {"algebra", "mechanics", "compile"},
     "analysis": RECORDS | {"algebra", "mechanics", "compile"},
     "checks": RECORDS | {"algebra", "mechanics", "compile", "analysis", "formulation"},
     "functions": RECORDS | {"algebra", "analysis", "checks", "compile", "mechanics", "render"},
     "wanted": {"errors"},
-    "formulation": RECORDS | {"wanted", "algebra", "analysis", "compile", "mechanics"},
+    "formulation": RECORDS
+    | {"compile_watch"}
+    | {"wanted", "algebra", "analysis", "compile", "mechanics"},
     "reactions": RECORDS | {"algebra", "formulation", "mechanics"},
     "study_linked": RECORDS
     | {
@@ -34,22 +37,48 @@ ALLOWED: dict[str, set[str]] = {
         "checks",
         "compile",
         "compile_contacts",
+        "compile_watch",
         "wanted",
         "compile_linked",
         "formulation",
         "mechanics",
     },
-    "study": RECORDS | {"wanted", "spec", "mechanics", "compile", "checks", "study_linked"},
+    "study": RECORDS
+    | {"algebra", "wanted", "spec", "mechanics", "compile", "checks", "study_linked"},
     "evaluate_joints": RECORDS
     | {"compile", "compile_reactions", "evaluate", "mechanics", "states"},
-    "evaluate_contacts": RECORDS | {"compile_contacts", "evaluate", "mechanics", "states"},
+    "evaluate_contacts": RECORDS
+    | {"compile", "compile_contacts", "evaluate", "mechanics", "states"},
     "evaluate_linked": RECORDS
-    | {"compile_contacts", "evaluate_contacts"}
+    | {"compile_contacts", "compile_watch", "evaluate_contacts"}
     | {"algebra", "evaluate", "interpreter", "reactions", "states", "study_linked"},
     "answers": RECORDS
     | {"evaluate_joints", "evaluate", "evaluate_linked", "functions", "states", "study"},
-    "render": RECORDS | {"algebra", "mechanics"},
-    "numerics": RECORDS | {"render", "interpreter"},
+    "integrators": {"errors", "program"},
+    "compile_flow": RECORDS | {"algebra", "checks", "compile", "compile_contacts", "mechanics"},
+    "compile_steps": RECORDS
+    | {"algebra", "checks", "compile", "functions", "integrators", "mechanics"},
+    "compile_places": RECORDS | {"algebra", "compile", "mechanics", "render"},
+    "stepping": RECORDS | {"compile", "compile_steps", "integrators", "study"},
+    "simulate_setup": RECORDS
+    | {"checks", "compile_contacts", "compile_flow", "compile_steps", "evaluate"}
+    | {"evaluate_linked", "integrators", "mechanics", "numerics", "states", "stepping", "study"},
+    "simulate_method": RECORDS | {"integrators", "numerics", "simulate_setup", "study"},
+    "simulate": RECORDS | {"integrators", "numerics", "simulate_method", "simulate_setup"},
+    "simulate_table": RECORDS | {"numerics", "simulate_setup"},
+    "simulate_report": RECORDS
+    | {"numerics", "simulate", "simulate_method", "simulate_setup", "simulate_table"},
+    "simulate_run": RECORDS
+    | {"compile_places", "numerics", "render", "simulate", "simulate_method", "simulate_report"}
+    | {"simulate_setup", "simulate_table", "study"},
+    "cli_simulate": {"cli_common", "errors", "files", "simulate_run", "wanted"},
+    "chart": RECORDS
+    | {"compile_steps", "formulation", "integrators", "numerics", "render", "simulate"}
+    | {"simulate_method", "simulate_setup", "stepping", "study", "wanted"},
+    "charting": RECORDS | {"chart", "files", "spec", "study"},
+    "cli_chart": {"charting", "cli_common", "errors", "files"},
+    "render": RECORDS | {"algebra", "mechanics", "integrators"},
+    "numerics": RECORDS | {"render", "interpreter", "integrators"},
     "states": RECORDS | {"mechanics"},
     "evaluate": RECORDS | {"mechanics", "compile", "interpreter", "render", "numerics", "states"},
     "files": {"errors"},
@@ -57,7 +86,8 @@ ALLOWED: dict[str, set[str]] = {
     "rest": RECORDS | {"analysis", "mechanics", "render", "spec", "states"},
     "output_links": {"analysis", "formulation", "render"},
     "outputs": RECORDS
-    | {"output_links", "analysis", "functions", "study", "render", "checks", "spec"},
+    | {"checks", "functions", "integrators", "output_links", "analysis", "render", "spec"}
+    | {"stepping", "study"},
     "cli_common": {"errors", "files", "functions", "outputs", "spec", "study", "wanted"},
     "cli_regressor": {"cli_common", "files", "functions", "study", "wanted"},
     "urdf": {"__init__", "errors", "spec"},
@@ -65,7 +95,9 @@ ALLOWED: dict[str, set[str]] = {
     "cli": {
         "__init__",
         "cli_import",
+        "cli_chart",
         "cli_common",
+        "cli_simulate",
         "cli_regressor",
         "errors",
         "files",

@@ -12,7 +12,13 @@ from eomgen.algebra.arithmetic import FLOAT
 from eomgen.analysis import cards
 from eomgen.checks.evaluation import singly
 from eomgen.formulation import linked
-from eomgen.mechanics import newton_euler, newton_euler_loads, newton_euler_tree, speeds
+from eomgen.mechanics import (
+    newton_euler,
+    newton_euler_inside,
+    newton_euler_loads,
+    newton_euler_tree,
+    speeds,
+)
 from eomgen.mechanics.newton_euler import lever
 from eomgen.mechanics.vectors import add, dot, scale, subtract, transform
 from eomgen.spec import read
@@ -81,7 +87,7 @@ def elsewhere(scene):
     columns = [
         works(kinematics, e.force, e.velocity)
         for element, e in newton_euler_loads._elements(kinematics)
-        if element.between is None
+        if element.between is None and newton_euler_inside.of(model, element.along) is None
     ]
     columns += [
         works(kinematics, push.force, kinematics.velocity(push.point))

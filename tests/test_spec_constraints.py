@@ -191,7 +191,7 @@ def test_what_is_wrong_in_a_constraint_is_told_once():
     assert codes(FOUR_BAR.replace("constraints:", "constrants:")) == ["E104"]
     assert codes(FOUR_BAR.replace("holonomic", "holonmic")) == ["E104"]
     assert codes(FOUR_BAR.replace("C = Cr", "C = Crr")) == ["E301"]
-    text = FOUR_BAR.replace("C = Cr, reaction: pin_C", "C - Cr, reaction: a, friction: 1")
+    text = FOUR_BAR.replace("C = Cr, reaction: pin_C", "C - Cr, reaction: a, restitution: 1")
     assert codes(text) == ["E205", "E303", "E112"]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import reduce
+from functools import partial, reduce
 from typing import Any
 
 import sympy as sp
@@ -91,6 +91,10 @@ class ClosedForm:
             if isinstance(what, sp.Symbol) and what in direction
         }
         return Along(self.ring, moving).form(value)
+
+    def direction(self, rates: Mapping[sp.Symbol, Form]) -> Callable[[Form], Form]:
+        """The derivative along one direction, as a function of the value."""
+        return partial(self.along, direction=rates)
 
 
 @dataclass

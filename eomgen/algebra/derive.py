@@ -98,18 +98,32 @@ def along(node: Node, seeds: Mapping[Node, Node]) -> Node:
 
 def gradient(node: Node, variables: Sequence[Node], rules: Rules = RULES) -> list[Node]:
     """The partial derivatives of one node by all variables, in one reverse sweep."""
+    return pullback([(node, node.graph.one)], variables, rules)
+
+
+def pullback(
+    weighted: Sequence[tuple[Node, Node]], variables: Sequence[Node], rules: Rules = RULES
+) -> list[Node]:
+    """The sum of weight * d value / d variable for every variable, in one reverse sweep.
+
+    With (velocity, force) pairs and the speeds as variables these are the generalized forces.
+    """
+    if not weighted:
+        return [variable.graph.zero for variable in variables]
     wanted = 0
     for variable in variables:
         wanted |= variable.leaves
-    graph = node.graph
-    ends = set(variables)
-    adjoints = {node: graph.one}
-    for top in reversed(below([node], stop=lambda a: a in ends or not a.leaves & wanted)):
-        adjoint = adjoints.get(top, graph.zero)
-        if top in ends or adjoint is graph.zero:
+    ends, zero = set(variables), weighted[0][0].graph.zero
+    adjoints: dict[Node, Node] = {}
+    for value, weight in weighted:
+        adjoints[value] = adjoints.get(value, zero) + weight
+    values = [value for value, _ in weighted]
+    for top in reversed(below(values, stop=lambda a: a in ends or not a.leaves & wanted)):
+        adjoint = adjoints.get(top, zero)
+        if top in ends or adjoint is zero:
             continue
         for index, operand in enumerate(top.operands):
             if operand.leaves & wanted:
                 share = rules[top.operator][index](top, *top.operands, adjoint)
-                adjoints[operand] = adjoints.get(operand, graph.zero) + share
-    return [adjoints.get(variable, graph.zero) for variable in variables]
+                adjoints[operand] = adjoints.get(operand, zero) + share
+    return [adjoints.get(variable, zero) for variable in variables]

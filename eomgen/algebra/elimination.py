@@ -42,16 +42,19 @@ def order_of(matrix: Sequence[Sequence[float]], least: float = 1e-9) -> Order:
 
 def solve(
     matrix: Sequence[Sequence[Node]], rights: Sequence[Sequence[Node]], order: Order
-) -> tuple[list[list[Node]], Pivots]:
-    """x of A x = b for every right side, and pivot^2 with its scale for each pivot.
+) -> tuple[list[list[Node]], Pivots, Node]:
+    """(x of A x = b for every right side, pivot^2 with its scale for each pivot, their product).
 
-    The unknowns are in the order of the matrix's columns.
+    The unknowns are in the order of the matrix's columns. The product of the pivots is the
+    determinant, but for a sign that is always the same.
     """
     rows = [list(row) for row in matrix]
     sides = [[right[i] for right in rights] for i in range(len(rows))]
     pivots = []
+    product = matrix[0][0].graph.one
     for place, (i, j) in enumerate(zip(order.rows, order.columns, strict=True)):
         pivot = rows[i][j]
+        product = pivot * product
         # 1/p as p/p^2: the square is what the program requires to be positive
         reciprocal = 1 / pivot if pivot.operator == "number" else pivot / (pivot * pivot)
         if pivot.operator != "number":
@@ -62,7 +65,7 @@ def solve(
             factor = rows[r][j]
             rows[r] = [a - factor * b for a, b in zip(rows[r], rows[i], strict=True)]
             sides[r] = [a - factor * b for a, b in zip(sides[r], sides[i], strict=True)]
-    return _substituted_back(rows, sides, order), tuple(pivots)
+    return _substituted_back(rows, sides, order), tuple(pivots), product
 
 
 def _substituted_back(

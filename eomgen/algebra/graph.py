@@ -147,7 +147,36 @@ def add(a: Node, b: Node) -> Node:
         (c, x), (d, y) = term(a), term(b)
         if x is y:
             return _scale(c + d, x)
+        if c == d and (square := _pythagoras(x, y)) is not None:
+            return _scale(c, square)
     return binary("add", a, b) if a.id < b.id else binary("add", b, a)
+
+
+def _pythagoras(a: Node, b: Node) -> Node | None:
+    """x^2 where a = (x sin y)^2 and b = (x cos y)^2 or the other way round; None elsewhere."""
+    if a.operator != "multiply" or b.operator != "multiply":
+        return None
+    (first, again), (second, once_more) = a.operands, b.operands
+    if first is not again or second is not once_more:
+        return None
+    for p in _factors(first):
+        for q in _factors(second):
+            angles = {p.operator, q.operator} == {"sin", "cos"} and p.operands == q.operands
+            if angles and (rest := _without(first, p)) is _without(second, q):
+                return multiply(rest, rest)
+    return None
+
+
+def _factors(a: Node) -> tuple[Node, ...]:
+    return a.operands if a.operator == "multiply" else (a,)
+
+
+def _without(product: Node, factor: Node) -> Node:
+    """The other factor of a product of two, one for the factor itself."""
+    if product is factor:
+        return product.graph.one
+    first, second = product.operands
+    return second if first is factor else first
 
 
 def subtract(a: Node, b: Node) -> Node:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from eomgen.algebra.graph import Node
@@ -43,11 +44,11 @@ def factor(matrix: Sequence[Sequence[Any]], check: Check) -> Factors:
     for k in reversed(range(len(rows))):
         check(k, rows[k][k], matrix[k][k])
         reciprocals[k] = 1 / rows[k][k]
-        _eliminate(rows, k, reciprocals[k])
+        eliminate(rows, k, reciprocals[k])
     return Factors(tuple(tuple(row[:-1]) for row in rows), tuple(reciprocals))
 
 
-def _eliminate(rows: list[list[Any]], k: int, reciprocal: Any) -> None:
+def eliminate(rows: list[list[Any]], k: int, reciprocal: Any) -> None:
     """A_ij -= L_ki A_kj with L_ki = A_ki / d_k; row k becomes L's."""
     for i in reversed(range(k)):
         if _is_zero(rows[k][i]):
@@ -90,15 +91,20 @@ def solve(
 ) -> tuple[list[list[Node]], Pivots]:
     """The solutions of A x = b for every b, unrolled, and each pivot with its scale A_kk."""
     pivots: list[tuple[Node, Node]] = []
-
-    def check(row: int, pivot: Node, scale: Node) -> None:
-        if pivot.operator == "number" and pivot.datum <= 0:
-            raise SingularMassMatrix(f"in row {row + 1}", pivot.datum)
-        if pivot.operator != "number":
-            pivots.append((pivot, scale))
-
-    factors = factor(matrix, check)
+    factors = factor(matrix, partial(check_pivot, pivots))
     return [substitute(factors, right) for right in rights], tuple(pivots)
+
+
+def check_pivot(pivots: list[tuple[Node, Node]], row: int, pivot: Node, scale: Node) -> None:
+    """Remember a pivot, which the program will check; a number is checked here.
+
+    Raises:
+        SingularMassMatrix: it is a number and not positive.
+    """
+    if pivot.operator == "number" and pivot.datum <= 0:
+        raise SingularMassMatrix(f"in row {row + 1}", pivot.datum)
+    if pivot.operator != "number":
+        pivots.append((pivot, scale))
 
 
 def solve_in_loop(matrix: Sequence[Sequence[Node]], *rights: Sequence[Node]) -> list[list[Node]]:

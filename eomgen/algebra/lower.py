@@ -40,7 +40,7 @@ class GraphAlgebra:
 
     def along(self, value: Node, direction: Mapping[sp.Symbol, Node]) -> Node:
         """The sum of d value / d symbol * direction[symbol]; symbols not bound are in no value."""
-        return self._direction(direction)(value)
+        return self.direction(direction)(value)
 
     def apply(self, name: str, *operands: Node) -> Node:
         """An operator of `program.OPERATORS` on its operands."""
@@ -54,7 +54,7 @@ class GraphAlgebra:
         """Whether the node is the number 0; another form of zero is not seen."""
         return value is self.graph.zero
 
-    def _direction(self, rates: Mapping[sp.Symbol, Node]) -> Callable[[Node], Node]:
+    def direction(self, rates: Mapping[sp.Symbol, Node]) -> Callable[[Node], Node]:
         """The derivative along `rates`; equal directions share their memory."""
         seeds = {self.bindings[s]: rate for s, rate in rates.items() if s in self.bindings}
         key = tuple((node.id, rate.id) for node, rate in seeds.items())

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from fractions import Fraction
+from math import lcm
 from typing import Any
 
 from eomgen.errors import UsageError
@@ -204,46 +205,61 @@ def total(ring: Ring, forms: Iterable[Form]) -> Form:
 def multiply(left: Form, right: Form) -> Form:
     """The product, reduced."""
     ring = left.ring
-    terms: Terms = {}
     ring.products += len(left.terms) * len(right.terms)
     if ring.products > MOST_PRODUCTS:
         raise TooLarge
-    for (m1, w1, s1), c1 in left.terms.items():
-        for (m2, w2, s2), c2 in right.terms.items():
-            monomial, c = ring.product(m1, m2), c1 * c2
-            if not w1 or not w2:
-                _collect(terms, (monomial, w1 or w2, s1 or s2), c)
-                continue
-            _collect_beat(terms, ring, monomial, ((w1, s1), (w2, s2)), c)
-    result = Form(ring, {key: exact(c) for key, c in terms.items() if c})
+    # whole numbers over one denominator: sums of fractions would take most of the time
+    (first, d1), (second, d2) = _whole(left), _whole(right)
+    terms: dict[Key, int] = {}
+    for place, ((m1, w1, s1), c1) in enumerate(first):
+        if left is right:  # a square: every mixed product once, doubled
+            second = [(k, 2 * c) for k, c in first[:place]] + first[place : place + 1]
+        for (m2, w2, s2), c2 in second:
+            monomial = ring.product(m1, m2)
+            if w1 and w2:
+                _collect_beat(terms, ring, monomial, ((w1, s1), (w2, s2)), c1 * c2)
+            else:
+                key = (monomial, w1 or w2, s1 or s2)
+                terms[key] = terms.get(key, 0) + 2 * c1 * c2
+    result = Form(ring, {key: _over(c, 2 * d1 * d2) for key, c in terms.items() if c})
     return reduced(result) if ring.squares else result
 
 
-def _collect(terms: Terms, key: Key, c: Number) -> None:
-    terms[key] = terms.get(key, 0) + c
+def _whole(form: Form) -> tuple[list[tuple[Key, int]], int]:
+    """Terms with whole coefficients, and the denominator of them all."""
+    denominator = lcm(*(c.denominator for c in form.terms.values()))
+    pairs = form.terms.items()
+    return [(key, c.numerator * (denominator // c.denominator)) for key, c in pairs], denominator
+
+
+def _over(numerator: int, denominator: int) -> Number:
+    """The quotient, a whole number where it is one."""
+    whole, rest = divmod(numerator, denominator)
+    return Fraction(numerator, denominator) if rest else whole
 
 
 def _collect_beat(
-    terms: Terms,
+    terms: dict[Key, int],
     ring: Ring,
     monomial: Monomial,
     waves: tuple[tuple[Wave, bool], tuple[Wave, bool]],
-    c: Number,
+    c: int,
 ) -> None:
-    """Add c * monomial * wave * wave as waves of the sum and of the difference of the angles."""
+    """Add 2 c * monomial * wave * wave as waves of the sum and of the difference of the angles."""
     (w1, s1), (w2, s2) = waves
     (up, up_sign), (down, down_sign) = ring.beat(w1, w2)
-    half = exact(Fraction(c, 2))
     sine = s1 != s2
-    # sin a sin b = (cos(a-b) - cos(a+b))/2;  cos a sin b = (sin(a+b) - sin(a-b))/2
-    up_c = -half if s1 and s2 else half
-    down_c = -half if s2 and not s1 else half
+    # 2 sin a sin b = cos(a-b) - cos(a+b);  2 cos a sin b = sin(a+b) - sin(a-b)
+    up_c = -c if s1 and s2 else c
+    down_c = -c if s2 and not s1 else c
     if sine:
         up_c, down_c = up_c * up_sign, down_c * down_sign
     if up or not sine:
-        _collect(terms, (monomial, up, sine and bool(up)), up_c)
+        key = (monomial, up, sine and bool(up))
+        terms[key] = terms.get(key, 0) + up_c
     if down or not sine:
-        _collect(terms, (monomial, down, sine and bool(down)), down_c)
+        key = (monomial, down, sine and bool(down))
+        terms[key] = terms.get(key, 0) + down_c
 
 
 def reduced(form: Form) -> Form:
@@ -256,7 +272,8 @@ def reduced(form: Form) -> Form:
     for key in heavy:
         atom, exponent = next((a, e) for a, e in key[0] if e > 1 and a in ring.squares)
         rest = tuple((a, e if a != atom else e % 2) for a, e in key[0] if a != atom or e % 2)
-        _collect(groups.setdefault((atom, exponent // 2), {}), (rest, *key[1:]), form.terms[key])
+        group, lighter = groups.setdefault((atom, exponent // 2), {}), (rest, *key[1:])
+        group[lighter] = group.get(lighter, 0) + form.terms[key]
     light = Form(ring, {k: c for k, c in form.terms.items() if k not in heavy})
     parts = [
         Form(ring, terms) * ring.squares[atom] ** exponent

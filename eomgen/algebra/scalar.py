@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import Any, Protocol, Self, TypeVar
 
@@ -44,6 +44,9 @@ class Algebra(Protocol[S]):
 
     def along(self, value: S, direction: Mapping[sp.Symbol, S]) -> S:
         """The directional derivative: sum of d value / d symbol * direction[symbol]."""
+
+    def direction(self, rates: Mapping[sp.Symbol, S]) -> Callable[[S], S]:
+        """The derivative along one direction, as a function of the value."""
 
     def extended(self, bindings: Mapping[sp.Symbol, S]) -> Algebra[S]:
         """The same algebra with more symbols bound to values."""

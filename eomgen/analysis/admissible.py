@@ -23,6 +23,10 @@ from eomgen.errors import UsageError
 MOVED = PRECISE.number(10) ** -12  # less is not worth a word
 CONTRADICTS = 1e-4  # a row is named when its residual is no less than this share of the largest
 
+DEPENDENT = 1e-9  # of the largest singular value: columns depend on each other
+BESIDE = 1e-2  # how far from a solution a search starts to see whether it is alone
+RETURNED = 0.3  # of that distance
+
 TRIES = 20
 NARROW = 0.2
 FASTEST = 2.0  # rates before they are made admissible
@@ -196,13 +200,23 @@ def _contradiction(
     best = min(reached, key=lambda o: sum(r * r for r in o.residuals))
     sizes = {n: abs(r) for n, r in zip(names, best.residuals, strict=True)}
     largest = max(sizes.values())
-    listed = [
-        f"{n} (residual {float(r):.3g})" for n, r in sizes.items() if r >= largest * CONTRADICTS
-    ]
+    kept = [n for n, r in sizes.items() if r >= largest * CONTRADICTS]
+    listed = ", ".join(f"{n} (residual {float(sizes[n]):.3g})" for n in kept)
+    others = ", ".join(_beside(linkage, kept[0], names)) if len(kept) == 1 else ""
     return (
-        f"no admissible state was found: {', '.join(listed)} cannot be satisfied together; "
+        f"no admissible state was found: {listed} cannot be satisfied together"
+        f"{' with ' * bool(others)}{others}; "
         "mend the constraints, or give `initial` and `guess` nearer to a state that satisfies them"
     )
+
+
+def _beside(linkage: Linkage, name: str, names: Sequence[str]) -> list[str]:
+    """Other rows that hold a coordinate of this one."""
+    held = {
+        r.name: {j for j, entry in enumerate(r.jacobian) if entry is not linkage.zero}
+        for r in linkage.rows
+    }
+    return [n for n in names if n != name and held[n] & held[name]]
 
 
 def _others(linkage: Linkage, state: State, free: Sequence[int]) -> tuple[tuple[Any, ...], ...]:
@@ -223,11 +237,31 @@ def _others(linkage: Linkage, state: State, free: Sequence[int]) -> tuple[tuple[
 
 
 def _is_isolated(linkage: Linkage, state: State, free: Sequence[int]) -> bool:
-    """Whether the rows determine the free coordinates: their columns are independent."""
+    """Whether the rows determine the free coordinates, with the others as they are.
+
+    Where their columns depend on each other at this state it may be a double solution, as at a dead
+    point, or one of a continuum: a search from beside it comes back, or stays beside it.
+    """
     rows = [r.jacobian for r in linkage.holonomic]
     slope = linkages.matrix(linkage, rows, state, PRECISE)
     columns = np.array([[float(row[i]) for i in free] for row in slope])
-    return bool(np.linalg.matrix_rank(columns, tol=1e-9) == len(free))
+    _, sizes, directions = np.linalg.svd(columns)
+    rank = int(np.sum(sizes > DEPENDENT * sizes[0])) if sizes[0] > 0 else 0
+    loose = [side * d for d in directions[rank:] for side in (BESIDE, -BESIDE)]
+    problem = position_problem(linkage, state)
+    return all(_comes_back(problem, state, free, moved) for moved in loose)
+
+
+def _comes_back(
+    problem: newton.Problem, state: State, free: Sequence[int], moved: Sequence[float]
+) -> bool:
+    """Whether a search that starts beside a solution finds nothing but that solution."""
+    start = list(state.coordinates)
+    for i, step in zip(free, moved, strict=True):
+        start[i] = start[i] + PRECISE.number(float(step))
+    outcome = newton.close(problem, start, free)
+    gone = max(abs(v - w) for v, w in zip(outcome.values, state.coordinates, strict=True))
+    return not outcome.closed or gone < RETURNED * BESIDE
 
 
 def draw(

@@ -94,10 +94,10 @@ def of(scene: Machine) -> Linkage:
     model = scene.model
     for constraint in model.constraints:
         _refuse_inputs(model, constraint)
-    kinematics = scene.kinematics
+    kinematics, rows = scene.kinematics, scene.rows
     if model.speeds:
         kinematics = machine.graph_kinematics(without_speeds(model))
-    rows = constraints.rows(kinematics)
+        rows = constraints.rows(kinematics)
     gaps = tuple(
         (c.name, gap)
         for c in model.constraints

@@ -48,7 +48,8 @@ def basis(linkage: Linkage, states: Sequence[State], kept: Sequence[int]) -> Bas
     rows = [linkage.rows[i].jacobian for i in kept]
     matrices = [linkages.matrix(linkage, rows, s, PRECISE) for s in states]
     coordinates = linkage.model.coordinates
-    dependent = _dependent(matrices, coordinates)
+    linked = [j for j, c in enumerate(coordinates) if c.role == "linked"]
+    dependent = dependent_columns(matrices, linked)
     independent = [j for j in range(len(coordinates)) if j not in dependent]
     return Basis(
         tuple(coordinates[j].name for j in independent),
@@ -58,10 +59,11 @@ def basis(linkage: Linkage, states: Sequence[State], kept: Sequence[int]) -> Bas
     )
 
 
-def _dependent(matrices: Sequence[Matrix], coordinates: Sequence[Coordinate]) -> list[int]:
+def dependent_columns(matrices: Sequence[Matrix], preferred: Sequence[int] = ()) -> list[int]:
     """The columns to solve for: the candidate of one state whose worst determinant is largest."""
-    linked = [j for j, c in enumerate(coordinates) if c.role == "linked"]
-    candidates = dict.fromkeys(elimination.pivot_columns(m, linked, LEAST_PIVOT) for m in matrices)
+    candidates = dict.fromkeys(
+        elimination.pivot_columns(m, preferred, LEAST_PIVOT) for m in matrices
+    )
 
     def worst(columns: Iterable[int]) -> Any:
         chosen = list(columns)

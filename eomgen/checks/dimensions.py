@@ -9,7 +9,7 @@ from fractions import Fraction
 import sympy as sp
 
 from eomgen.algebra.closed import to_sympy
-from eomgen.algebra.normal import Form, Kernel, Key, Ring
+from eomgen.algebra.normal import Form, Kernel, Key, Monomial, Ring
 from eomgen.dimension import ENERGY, NONE, TIME, Dimension
 from eomgen.errors import CheckError
 from eomgen.mechanics.equations import Derivation, Equation
@@ -76,9 +76,12 @@ def parts(equation: Equation) -> Iterator[Form]:
 
 def terms(known: Dimensions, *forms: Form) -> Iterator[Term]:
     """The terms whose dimension is known."""
+    found: dict[Monomial, Dimension | None] = {}  # many terms differ in their waves only
     for form in forms:
         for key, c in form.terms.items():
-            dimension = of_key(known, form.ring, key)
+            if key[0] not in found:
+                found[key[0]] = of_key(known, form.ring, key)
+            dimension = found[key[0]]
             if dimension is not None:
                 yield Term(Form(form.ring, {key: c}), dimension)
 

@@ -28,6 +28,7 @@ def check(machine: Machine, samples: Samples, freedom: int | None = None) -> int
     """
     broken = [
         *_degrees_of_freedom(machine, freedom),
+        *_of_no_mode(machine),
         *_equations(machine, samples),
         *_conserved(machine, samples),
         *_energies(machine, samples),
@@ -53,6 +54,20 @@ def _degrees_of_freedom(machine: Machine, freedom: int | None) -> list[str]:
         return []
     how = "one for each free coordinate" if freedom is None else "by the rank of the constraints"
     return [f"dof is {found}, {how}, not {stated}"]
+
+
+def _of_no_mode(machine: Machine) -> list[str]:
+    """Claims on the motion of a rough guide: it has one for each mode, and loses energy."""
+    model = machine.model
+    if not model.guides:
+        return []
+    held = {c.acceleration for c in model.coordinates}
+    claims = [c for c in model.expect.equations if c.residual.free_symbols & held]
+    return [
+        f"`{claim.text}` is claimed of every motion, but {model.guides[0].name} has friction: "
+        "stick and slip move differently; claim positions, rates or energies"
+        for claim in (*claims, *model.expect.conserved)
+    ]
 
 
 def moving_algebra(machine: Machine) -> Algebra[Node]:

@@ -6,12 +6,15 @@ from collections.abc import Sequence
 from typing import Any
 
 from eomgen.algebra.arithmetic import FLOAT
+from eomgen.analysis import linkage
 from eomgen.analysis.admissible import Admissible
+from eomgen.analysis.linkage import State
 from eomgen.checks.evaluation import Bench, benches, over
 from eomgen.checks.samples import Samples
 from eomgen.compile import Machine
 from eomgen.errors import CheckError
 from eomgen.formulation import Formulation, Linked
+from eomgen.mechanics import speeds
 from eomgen.mechanics.equations import ConstraintRow, Derivation
 
 TOLERANCE = 1e-10
@@ -50,20 +53,27 @@ def _forms(row: ConstraintRow) -> list[Any]:
 
 def samples_of(scene: Linked, states: Sequence[Admissible], drawn: Samples) -> Samples:
     """Admissible states as samples, with the inputs and accelerations of random ones."""
-    count = len(states)
+    count, size = len(states), len(scene.model.coordinates)
     found = [s.state for s in states]
-    size = range(len(scene.model.coordinates))
+    moving = [[float(v) for v in _speeds(scene, s.state)] for s in states]
     return Samples(
         count=count,
         time=[float(s.time) for s in found],
         state=[
-            *([float(s.coordinates[j]) for s in found] for j in size),
-            *([float(s.rates[j]) for s in found] for j in size),
+            *([float(s.coordinates[j]) for s in found] for j in range(size)),
+            *([row[j] for row in moving] for j in range(len(drawn.accelerations))),
         ],
         inputs=[column[:count] for column in drawn.inputs],
         parameters=[[float(s.parameters[k]) for s in found] for k in range(len(drawn.parameters))],
         accelerations=[column[:count] for column in drawn.accelerations],
     )
+
+
+def _speeds(scene: Linked, state: State) -> Sequence[Any]:
+    """The speeds of a state whose rates are known."""
+    algebra = scene.links.kinematics.algebra
+    nodes = [algebra.of(s.formula) for s in scene.model.speeds]
+    return linkage.values(scene.links, nodes, state, linkage.PRECISE) if nodes else state.rates
 
 
 def formulations_agree(
@@ -102,12 +112,10 @@ def accelerations(
 ) -> dict[str, float]:
     """q'' by coordinate, for the coordinates that the formulation has."""
     model = formulation.machine.model
-    names = [c.name for c in scene.model.coordinates]
-    values = [column[index] for column in samples.state]
+    names = [c.symbol for c in scene.model.coordinates] + [*speeds.symbols(scene.model)]
+    values = dict(zip(names, (column[index] for column in samples.state), strict=True))
     own = [c.name for c in model.coordinates]
-    speeds = [s.name.rstrip("'") for s in model.speeds] or own
-    state = [values[names.index(n)] for n in own]
-    state += [values[len(names) + names.index(n)] for n in speeds]
+    state = [values[s] for s in (*(c.symbol for c in model.coordinates), *speeds.symbols(model))]
     at = _at(formulation.machine, samples, index, state)
     found = at.nodes(formulation.machine.accelerations)
     return {name: float(value) for name, value in zip(own, found, strict=True)}

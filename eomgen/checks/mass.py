@@ -17,7 +17,7 @@ STATES = 3
 
 
 def check(machine: Machine, samples: Samples) -> None:
-    """Refuse a scene in which some motion has no inertia at any of the first states.
+    """Refuse a scene in which some admissible motion has no inertia at any of the first states.
 
     Raises:
         UsageError: E-MASS, with the direction of that motion.
@@ -28,7 +28,7 @@ def check(machine: Machine, samples: Samples) -> None:
 
 
 def _matrix(at: Bench) -> list[list[float]]:
-    rows = at.machine.equations.mass_matrix
+    rows = at.machine.inertia
     return [[float(v) for v in at.nodes(row)] for row in rows]
 
 
@@ -59,4 +59,6 @@ def _said(at: Bench) -> str:
     return (
         f"E-MASS: the mass matrix is singular: the motion {', '.join(shares)} has no inertia; "
         "give it a mass or an inertia, or remove a coordinate"
+        + " (no constraint decides it)"
+        * bool(at.machine.kept)
     )

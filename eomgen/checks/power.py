@@ -15,6 +15,7 @@ from typing import Any
 import sympy as sp
 
 from eomgen.algebra.arithmetic import mpmath_arithmetic
+from eomgen.algebra.derive import direction, gradient
 from eomgen.algebra.graph import Node
 from eomgen.checks.agreement import DECIDING_STATES, DIGITS, EXACT_TOLERANCE, FLOAT_TOLERANCE
 from eomgen.checks.evaluation import Bench, benches, over, singly
@@ -22,6 +23,7 @@ from eomgen.checks.samples import Samples
 from eomgen.compile import Machine
 from eomgen.errors import CheckError
 from eomgen.mechanics import efforts, speeds
+from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.vectors import dot
 from eomgen.model import TIME
 
@@ -54,21 +56,49 @@ def imbalance(terms: Sequence[Node], at: Bench) -> Any:
 
 
 def balance_terms(machine: Machine) -> list[Node]:
-    """Terms that add up to zero on every motion."""
-    kinetic, potential = machine.energy
-    algebra, one = machine.kinematics.algebra, machine.kinematics.algebra.number(1)
-    unknown = speeds.symbols(machine.model)
-    relative = relative_speeds(machine)
-    momenta = [algebra.along(kinetic, {symbol: one}) for symbol in unknown]
-    energy = dot(momenta, relative) - kinetic
+    """Terms that add up to zero on every motion; each gradient is one reverse sweep."""
+    algebra, potential = machine.kinematics.algebra, machine.energy[1]
     motion = motion_of(machine)
-    terms = [algebra.along(energy, {s: r}) for s, r in motion.items()]
-    terms += [algebra.along(potential, {s: r}) for s, r in motion.items() if s != TIME]
-    terms += [-power for power in _powers(machine, relative)]
+    slopes = gradient(inertial_energy(machine), [algebra.of(s) for s in motion])
+    terms = [slope * rate for slope, rate in zip(slopes, motion.values(), strict=True)]
+    moving = [s for s in motion if s != TIME]
+    slopes = gradient(potential, [algebra.of(s) for s in moving])
+    terms += [slope * motion[s] for slope, s in zip(slopes, moving, strict=True)]
+    terms += [-power for power in _powers(machine, relative_speeds(machine))]
     terms += [-power for power in _constraint_powers(machine)]
-    terms.append(algebra.along(kinetic, {TIME: one}))
-    terms += [p * e for p, e in zip(momenta, _explicit(machine), strict=True)]
-    return terms
+    return terms + _explicit_terms(machine)
+
+
+def inertial_energy(machine: Machine) -> Node:
+    """sum p (u - y) - T: the kinetic energy, but where it depends on the time explicitly."""
+    return dot(_momenta(machine), relative_speeds(machine)) - machine.energy[0]
+
+
+def flow(machine: Machine) -> tuple[Node, Node]:
+    """(E, P): the energy sum p (u - y) - T + V, T + V without explicit time, and what it gains.
+
+    P is the power of everything without potential, of constraints that move by themselves, and of
+    what depends on the time explicitly.
+    """
+    algebra, potential = machine.kinematics.algebra, machine.energy[1]
+    powers = [*_powers(machine, relative_speeds(machine)), *_moving_powers(machine)]
+    powers += [-term for term in _explicit_terms(machine)]
+    powers.append(algebra.along(potential, {TIME: algebra.number(1)}))
+    total = sum(powers, algebra.number(0))
+    return inertial_energy(machine) + potential, total
+
+
+def _momenta(machine: Machine) -> list[Node]:
+    """p = dT/du."""
+    algebra = machine.kinematics.algebra
+    return gradient(machine.energy[0], [algebra.of(s) for s in speeds.symbols(machine.model)])
+
+
+def _explicit_terms(machine: Machine) -> list[Node]:
+    """dT/dt at constant q and u, and p dy/dt: zero where nothing depends on the time."""
+    algebra, one = machine.kinematics.algebra, machine.kinematics.algebra.number(1)
+    pairs = zip(_momenta(machine), _explicit(machine), strict=True)
+    return [algebra.along(machine.energy[0], {TIME: one}), *(p * e for p, e in pairs)]
 
 
 def motion_of(machine: Machine) -> dict[sp.Symbol, Node]:
@@ -92,9 +122,11 @@ def _powers(machine: Machine, relative: Sequence[Node]) -> Iterable[Node]:
         *efforts.dissipative(machine.kinematics),
         *efforts.nonconservative(machine.kinematics),
     ]
+    algebra = machine.kinematics.algebra
+    leaves = [algebra.of(s) for s in speeds.symbols(machine.model)]
+    along = direction(algebra.number(0).graph, dict(zip(leaves, relative, strict=True)))
     for effort in everything:
-        for symbol, speed in zip(speeds.symbols(machine.model), relative, strict=True):
-            yield efforts.generalized_force(machine.kinematics, effort, symbol) * speed
+        yield dot(effort.force, [along(v) for v in effort.velocity])
 
 
 def _constraint_powers(machine: Machine) -> list[Node]:
@@ -103,7 +135,30 @@ def _constraint_powers(machine: Machine) -> list[Node]:
         return []
     rows = machine.schur.rows
     pairs = zip(machine.linked.multipliers, rows, strict=True)
-    return [multiplier * dot(row.jacobian, machine.rates) for multiplier, row in pairs]
+    relative = relative_speeds(machine)
+    return [multiplier * dot(row.jacobian, relative) for multiplier, row in pairs]
+
+
+def _moving_powers(machine: Machine) -> list[Node]:
+    """lambda J q' of the rows that depend on the time; of the others it is zero."""
+    if not machine.kept:
+        return []
+    algebra, one = machine.kinematics.algebra, machine.kinematics.algebra.number(1)
+    pairs = zip(_constraint_powers(machine), machine.schur.rows, strict=True)
+    return [
+        power
+        for power, row in pairs
+        if not algebra.is_zero(row.rate - dot(row.jacobian, machine.rates))
+        and not algebra.is_zero(explicit_rate(row, machine, one))
+    ]
+
+
+def explicit_rate(row: Row[Node], machine: Machine, one: Node) -> Node:
+    """The rate of a row while nothing moves but the time; of a rate constraint its free term."""
+    algebra = machine.kinematics.algebra
+    if row.residual is not None:
+        return algebra.along(row.residual, {TIME: one})
+    return row.rate - dot(row.jacobian, machine.rates)
 
 
 def _explicit(machine: Machine) -> list[Node]:

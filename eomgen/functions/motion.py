@@ -9,7 +9,7 @@ from functools import cached_property
 from eomgen.algebra.graph import Node
 from eomgen.compile import Machine
 from eomgen.mechanics import machine as machines
-from eomgen.mechanics import multipliers, regressor, speeds, virtual_work
+from eomgen.mechanics import multipliers, regressor, speeds
 from eomgen.mechanics.regressor import Inertial
 from eomgen.mechanics.vectors import dot, subtract
 
@@ -53,7 +53,7 @@ class Motion:
     @cached_property
     def inverse_dynamics(self) -> tuple[Node, ...]:
         """M u' + h - Q."""
-        return virtual_work.inverse_dynamics(self.machine.kinematics, self.accelerations)
+        return self.machine.inverse_dynamics(self.accelerations)
 
     @cached_property
     def inertial(self) -> tuple[Inertial[Node], ...]:

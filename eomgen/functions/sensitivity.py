@@ -15,12 +15,22 @@ from eomgen.algebra.graph import Node
 from eomgen.algebra.jacobian import Rows, cost, jacobian, substituted
 from eomgen.algebra.ldl import Pivots
 from eomgen.compile import LARGEST_UNROLLED
+from eomgen.errors import UsageError
 from eomgen.functions.motion import Motion
 from eomgen.mechanics import multipliers
 
 
 def state_derivative(motion: Motion, variables: Sequence[Node]) -> tuple[Rows, Pivots]:
-    """d (q', u') / d variables, a row for each component of the state, and the pivots."""
+    """d (q', u') / d variables, a row for each component of the state, and the pivots.
+
+    Raises:
+        UsageError: a constraint has friction, so that each mode has a motion of its own.
+    """
+    for guide in motion.machine.model.guides:
+        raise UsageError(
+            f"--functions: {guide.name} has friction: the state derivative is that of a mode, and "
+            "has no Jacobian here"
+        )
     rates = jacobian(motion.machine.rates, variables)
     found, pivots = accelerations(motion, variables)
     return rates + found, pivots
@@ -55,7 +65,7 @@ def _solved(motion: Motion, columns: Rows) -> tuple[Rows, Pivots]:
     """du' for every right side."""
     matrix = motion.machine.equations.mass_matrix
     if motion.machine.kept:
-        return multipliers.responses(motion.machine.schur, matrix, columns)
+        return multipliers.responses(motion.machine.schur, motion.machine.inertia, columns)
     if _in_a_loop(motion):
         return ldl.solve_in_loop(matrix, *columns), ()
     return ldl.solve(matrix, *columns)

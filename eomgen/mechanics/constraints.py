@@ -5,6 +5,7 @@ Over either algebra. The virtual form of a row is sum of J_j delta q_j = 0, at f
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Generic
 
@@ -24,8 +25,8 @@ class Row(Generic[S]):
     constraint: Constraint
     residual: S | None  # phi(q, t); None for a nonholonomic row, which has none
     rate: S  # phi' or a(q, q', t)
-    jacobian: tuple[S, ...]  # d rate / d q', one entry for each coordinate
-    gamma: S  # J q'' + gamma is the second rate
+    jacobian: tuple[S, ...]  # d rate / d u, one entry for each speed (u = q' by default)
+    gamma: S  # J u' + gamma is the second rate
 
     @property
     def is_holonomic(self) -> bool:
@@ -33,25 +34,31 @@ class Row(Generic[S]):
         return self.residual is not None
 
 
-def rows(kinematics: Kinematics[S]) -> tuple[Row[S], ...]:
-    """The rows of every bilateral constraint, as declared."""
+def rows(
+    kinematics: Kinematics[S], unknown: Sequence[sp.Symbol] | None = None
+) -> tuple[Row[S], ...]:
+    """The rows of every bilateral constraint, as declared; unknown: the speeds, by default q'."""
     bilateral = (c for c in kinematics.model.constraints if c.kind != "unilateral")
-    return tuple(row for c in bilateral for row in of(kinematics, c))
+    return tuple(row for c in bilateral for row in of(kinematics, c, unknown))
 
 
-def of(kinematics: Kinematics[S], constraint: Constraint) -> list[Row[S]]:
+def of(
+    kinematics: Kinematics[S], constraint: Constraint, unknown: Sequence[sp.Symbol] | None = None
+) -> list[Row[S]]:
     """The rows of one constraint; two equal points give one for each axis."""
+    if unknown is None:
+        unknown = [c.rate for c in kinematics.model.coordinates]
     if constraint.kind == "nonholonomic":
         algebra = kinematics.algebra
         rates = [algebra.of(r) for r in constraint.residuals]
         return [
-            _row(kinematics, constraint, name, None, rate)
+            _row(kinematics, unknown, (constraint, name, None), rate)
             for name, rate in zip(_names(constraint, len(rates)), rates, strict=True)
         ]
     residuals = residuals_of(kinematics, constraint)
     names = _names(constraint, len(residuals))
     return [
-        _row(kinematics, constraint, name, residual, kinematics.rate(residual))
+        _row(kinematics, unknown, (constraint, name, residual), kinematics.rate(residual))
         for name, residual in zip(names, residuals, strict=True)
     ]
 
@@ -71,16 +78,19 @@ def _names(constraint: Constraint, count: int) -> list[str]:
 
 
 def _row(
-    kinematics: Kinematics[S], constraint: Constraint, name: str, residual: S | None, rate: S
+    kinematics: Kinematics[S],
+    unknown: Sequence[sp.Symbol],
+    known: tuple[Constraint, str, S | None],
+    rate: S,
 ) -> Row[S]:
     algebra, one = kinematics.algebra, kinematics.algebra.number(1)
-    coordinates = kinematics.model.coordinates
+    constraint, name, residual = known
     return Row(
         name=name,
         constraint=constraint,
         residual=residual,
         rate=rate,
-        jacobian=tuple(algebra.along(rate, {c.rate: one}) for c in coordinates),
+        jacobian=tuple(algebra.along(rate, {symbol: one}) for symbol in unknown),
         gamma=algebra.along(rate, coasting(kinematics)),
     )
 

@@ -74,15 +74,10 @@ def of(scene: Scene) -> tuple[Contact, ...]:
         UsageError: friction has no point to act on, or the scene has speeds of its own.
     """
     model = scene.kinematics.model
-    found = [c for c in model.constraints if c.kind == "unilateral" or _rubs(c)]
+    found = [c for c in model.constraints if c.kind == "unilateral" or c.rubs]
     if found and model.speeds:
         raise UsageError("speeds beside contacts are not supported: leave `speeds` out")
     return tuple(_contact(scene, c) for c in found)
-
-
-def _rubs(constraint: Constraint) -> bool:
-    """Whether there is friction; a coefficient that is written 0 is none."""
-    return constraint.friction is not None and constraint.friction != 0
 
 
 def _contact(scene: Scene, constraint: Constraint) -> Contact:
@@ -102,7 +97,7 @@ def _contact(scene: Scene, constraint: Constraint) -> Contact:
     return Contact(
         row,
         None if e is None else kinematics.algebra.of(e),
-        contacts_touch.of(kinematics, row) if _rubs(constraint) else None,
+        contacts_touch.of(kinematics, row) if constraint.rubs else None,
     )
 
 

@@ -12,7 +12,7 @@ jams (Painleve's paradox), and the program stops with `singular` there.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from eomgen.algebra import ldl
 from eomgen.algebra.elementary import absolute, sign
@@ -46,6 +46,16 @@ class Press:
     row: Row[Node] | Slip
     column: Column  # generalized force per unit of the unknown
     drag: Column = ()  # a sliding two-sided constraint: - drag |unknown| comes in
+    slides: bool = False
+
+
+@dataclass(frozen=True)
+class Jam:
+    """Whether friction jams: where a margin is not positive the forces are not determined."""
+
+    margins: tuple[Node, ...] = ()  # the pivot of each sliding contact, in 1/kg for a distance
+    fitting: Node | None = None  # how many normal forces satisfy the mode, where one contact slides
+    pivots: ldl.Pivots = ()  # all others
 
 
 @dataclass(frozen=True)
@@ -54,8 +64,10 @@ class Motion:
 
     accelerations: tuple[Node, ...]
     normal: Mapping[str, Node]  # contact -> lambda_N, where it is closed
-    friction: Mapping[str, tuple[Node, ...]]  # sticking contact -> F_t along the tangents [N]
+    friction: Mapping[str, tuple[Node, ...]]  # contact with friction -> F_t on the tangents [N]
+    multipliers: Mapping[str, Node]  # two-sided row -> its lambda
     pivots: ldl.Pivots
+    jam: Jam
 
 
 def motion(scene: Scene, contacts: Sequence[Contact], mode: Mode) -> Motion:
@@ -65,19 +77,40 @@ def motion(scene: Scene, contacts: Sequence[Contact], mode: Mode) -> Motion:
         UsageError: more than one two-sided constraint slides.
     """
     presses = _presses(scene, contacts, mode)
-    found, accelerations, pivots = _solved(scene, presses)
-    sticking = [c for c in contacts if c.name in mode.sticking and c.touch is not None]
+    found, accelerations, pivots, jam = _solved(scene, presses)
+    states = dict(mode.states)
     touches = tuple(p for c in contacts if c.touch is not None for p in c.touch.pivots)
     return Motion(
         accelerations,
         {name: found[name, 0] for name in mode.active},
         {
-            c.name: tuple(found[c.name, k + 1] for k in range(len(c.touch.slips)))
-            for c in sticking
-            if c.touch is not None
+            c.name: tuple(_along(c, c.touch, states[c.name], found))
+            for c in contacts
+            if c.touch is not None and c.name in mode.active
         },
+        {row.name: found[row.name, 0] for row in bilateral(scene)},
         pivots + touches,
+        replace(jam, pivots=jam.pivots + touches),
     )
+
+
+def _along(
+    contact: Contact, touch: Touch, state: State, found: Mapping[Name, Node]
+) -> Iterator[Node]:
+    """F_t along each tangent: what holds where it sticks, -mu |N| v_t / |v_t| where it slides."""
+    if state is STICK:
+        yield from (found[contact.name, k + 1] for k in range(len(touch.slips)))
+        return
+    limit = touch.friction * _normal(contact, touch, found[contact.name, 0])
+    if state.direction:
+        yield -(state.direction * limit)
+        return
+    yield from (-(limit * slip.speed / slip_speed(touch, state)) for slip in touch.slips)
+
+
+def _normal(contact: Contact, touch: Touch, pressed: Node) -> Node:
+    """|N| in newtons: the force of a one-sided contact is not negative in its modes."""
+    return touch.steepness * (pressed if contact.one_sided else absolute(pressed))
 
 
 def _presses(scene: Scene, contacts: Sequence[Contact], mode: Mode) -> list[Press]:
@@ -118,20 +151,20 @@ def _sliding(contact: Contact, state: State) -> Press:
     drag = tuple(touch.friction * touch.steepness * d for d in _direction(touch, state))
     if contact.one_sided:
         column = tuple(g - d for g, d in zip(row.jacobian, drag, strict=True))
-        return Press((contact.name, 0), row, column)
-    return Press((contact.name, 0), row, row.jacobian, drag)
+        return Press((contact.name, 0), row, column, slides=True)
+    return Press((contact.name, 0), row, row.jacobian, drag, slides=True)
 
 
 def _direction(touch: Touch, state: State) -> Column:
     """The generalized force of a unit force along the slip velocity."""
     if state.direction:
         return tuple(state.direction * d for d in touch.slips[0].jacobian)
-    speed = _slip_speed(touch, state)
+    speed = slip_speed(touch, state)
     columns = zip(*(slip.jacobian for slip in touch.slips), strict=True)
     return tuple(dot([slip.speed for slip in touch.slips], c) / speed for c in columns)
 
 
-def _slip_speed(touch: Touch, state: State) -> Node:
+def slip_speed(touch: Touch, state: State) -> Node:
     """The slip speed, counted in the mode's direction in a plane; |v_t| in solid space."""
     if state.direction:
         return state.direction * touch.slips[0].speed
@@ -144,7 +177,7 @@ def _length(components: Sequence[Node]) -> Node:
 
 def _solved(
     scene: Scene, presses: Sequence[Press]
-) -> tuple[dict[Name, Node], tuple[Node, ...], ldl.Pivots]:
+) -> tuple[dict[Name, Node], tuple[Node, ...], ldl.Pivots, Jam]:
     """The unknown forces by name and q''."""
     matrix, load = scene.equations.mass_matrix, scene.equations.generalized_forces
     load = tuple(q - h for q, h in zip(load, scene.equations.bias, strict=True))
@@ -153,15 +186,26 @@ def _solved(
     free, columns, drag = solved[0], solved[1 : len(presses) + 1], solved[len(presses) + 1 :]
     system = [[dot(p.row.jacobian, c) for c in columns] for p in presses]
     right = [-p.row.gamma - dot(p.row.jacobian, free) for p in presses]
+    fitting: Node | None
     if drag:
         rub = [dot(p.row.jacobian, drag[0]) for p in presses]
-        unknowns, more = _two_sided(system, right, rub)
+        unknowns, more, fitting = _two_sided(system, right, rub)
         free = [f - d * absolute(unknowns[-1]) for f, d in zip(free, drag[0], strict=True)]
     else:
         (unknowns,), more = eliminated(system, right)
+        fitting = (1 + sign(unknowns[-1])) / 2 if unknowns else None
     accelerations = tuple(_plus(f, [c[i] for c in columns], unknowns) for i, f in enumerate(free))
-    names = (p.name for p in presses)
-    return dict(zip(names, unknowns, strict=True)), accelerations, (*pivots, *more)
+    found = dict(zip((p.name for p in presses), unknowns, strict=True))
+    sliding = sum(p.slides for p in presses)
+    steady = (*pivots, *more[: len(more) - sliding])
+    margins = tuple(margin for margin, _ in more[len(more) - sliding :])
+    jam = Jam(margins, fitting if sliding == 1 else None, checked(steady))
+    return found, accelerations, checked((*pivots, *more)), jam
+
+
+def checked(pivots: ldl.Pivots) -> ldl.Pivots:
+    """Those that a program has to look at: a number was looked at here."""
+    return tuple(p for p in pivots if p[0].operator != "number")
 
 
 def _plus(value: Node, left: Sequence[Node], right: Sequence[Node]) -> Node:
@@ -171,10 +215,11 @@ def _plus(value: Node, left: Sequence[Node], right: Sequence[Node]) -> Node:
 
 def _two_sided(
     matrix: Sequence[Sequence[Node]], right: Sequence[Node], rub: Sequence[Node]
-) -> tuple[list[Node], ldl.Pivots]:
-    """x of  A x - rub |x_last| = b:  x_last has the sign of its reduced right side.
+) -> tuple[list[Node], ldl.Pivots, Node]:
+    """(x, pivots, how many x there are) of  A x - rub |x_last| = b.
 
-    With s that sign  (a - s r) x_last = b  there; a > |r| makes the solution the only one.
+    With s the sign of x_last its reduced equation is  (a - s r) x_last = b: where a > |r| that sign
+    is the one of b and the solution is the only one; else there are two or none.
     """
     lead, last = [row[:-1] for row in matrix[:-1]], matrix[-1]
     sides = (right[:-1], [row[-1] for row in matrix[:-1]], rub[:-1])
@@ -184,7 +229,8 @@ def _two_sided(
     margin = a - absolute(r)
     x = b / (margin + (absolute(r) - sign(b) * r))
     solution = [o - s * x + d * absolute(x) for o, s, d in zip(others, stiff, rubbed, strict=True)]
-    return [*solution, x], (*pivots, (margin, last[-1]))
+    fitting = (2 + sign(b * (a - r)) - sign(b * (a + r))) / 2
+    return [*solution, x], (*pivots, (margin, last[-1])), fitting
 
 
 def eliminated(
@@ -202,7 +248,7 @@ def eliminated(
                 a - factor * b for a, b in zip(rows[i][k + 1 :], rows[k][k + 1 :], strict=True)
             ]
     solutions = [_substituted(rows, size + j) for j in range(len(rights))]
-    return solutions, tuple(p for p in pivots if p[0].operator != "number")
+    return solutions, tuple(pivots)
 
 
 def _positive(pivot: Node) -> Node:
@@ -236,15 +282,13 @@ def events(contacts: Sequence[Contact], mode: Mode, found: Motion) -> list[Node]
 def _reserve(contact: Contact, state: State, found: Motion) -> Node:
     """mu N - |F_t|."""
     assert contact.touch is not None
-    pressed = found.normal[contact.name]
-    size = pressed if contact.one_sided else absolute(pressed)
-    limit = contact.touch.friction * contact.touch.steepness * size
+    limit = contact.touch.friction * _normal(contact, contact.touch, found.normal[contact.name])
     return limit - _length(found.friction[contact.name])
 
 
 def _speed(contact: Contact, state: State, found: Motion) -> Node:
     assert contact.touch is not None
-    return _slip_speed(contact.touch, state)
+    return slip_speed(contact.touch, state)
 
 
 WATCHED: dict[str, Callable[[Contact, State, Motion], Node]] = {

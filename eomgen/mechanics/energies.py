@@ -10,7 +10,7 @@ from eomgen.algebra.scalar import S
 from eomgen.mechanics.elongation import elongation, elongation_rate, formula_of
 from eomgen.mechanics.equations import Contribution
 from eomgen.mechanics.kinematics import Kinematics, Spin
-from eomgen.mechanics.vectors import dot, transform
+from eomgen.mechanics.vectors import dot
 from eomgen.model import Body, Damper, Spring
 
 HALF = Fraction(1, 2)
@@ -38,9 +38,11 @@ def _body_terms(kinematics: Kinematics[S], body: Body) -> list[Contribution[S]]:
 
 
 def rotational_energy(spin: Spin[S]) -> S:
-    """1/2 w . (I w)."""
-    w = spin.angular_velocity
-    return dot(w, transform(spin.inertia, w)) * HALF
+    """1/2 w . (I w), the symmetric I from its lower triangle."""
+    w, inertia = spin.angular_velocity, spin.inertia
+    terms = [inertia[i][i] * HALF * (w[i] * w[i]) for i in range(len(w))]
+    terms += [inertia[i][j] * w[i] * w[j] for i in range(len(w)) for j in range(i)]
+    return sum(terms[1:], terms[0])
 
 
 def potential(kinematics: Kinematics[S]) -> tuple[Contribution[S], ...]:

@@ -6,9 +6,10 @@ component in a plane (about z) and three in solid space, in body axes (a rod's: 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from typing import Generic
 
 import sympy as sp
@@ -62,7 +63,7 @@ class Kinematics(Generic[S]):
     angles: dict[str, S | None] = field(default_factory=dict)
     turning: dict[str, Vector[S]] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def bodies(self) -> dict[str, Body]:
         """Bodies by name."""
         return {b.name: b for b in self.model.bodies}
@@ -72,9 +73,16 @@ class Kinematics(Generic[S]):
         """Number of components of a vector."""
         return SPACES[self.model.space]
 
-    def rate(self, value: S) -> S:
-        """The time derivative of a value."""
-        return self.algebra.along(value, self.flow.derivatives)
+    @cached_property
+    def places(self) -> dict[str, Place]:
+        """Where the points and the mass centres are, by name."""
+        centres = {b.name: b.com for b in self.model.bodies}
+        return centres | {p.name: p.place for p in self.model.points}
+
+    @cached_property
+    def rate(self) -> Callable[[S], S]:
+        """The time derivative, as a function of the value."""
+        return self.algebra.direction(self.flow.derivatives)
 
     def vector(self, components: tuple[sp.Expr, ...]) -> Vector[S]:
         """Formulas as scalars."""
@@ -83,9 +91,7 @@ class Kinematics(Generic[S]):
     def position(self, name: str) -> Vector[S]:
         """A point, or a body's mass centre."""
         if name not in self.positions:
-            places = {p.name: p.place for p in self.model.points}
-            place = places[name] if name in places else self.bodies[name].com
-            self.positions[name] = self.place(place)
+            self.positions[name] = self.place(self.places[name])
         return self.positions[name]
 
     def velocity(self, name: str) -> Vector[S]:

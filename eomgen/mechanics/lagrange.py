@@ -151,6 +151,7 @@ def derive(model: Model) -> Derivation:
     in_rates = tuple(_equation(lagrangian, m, row) for m, row in pairs)
     rates, equations = quasi_velocities.project(lagrangian.kinematics, in_rates)
     links = closed_rows(lagrangian.kinematics)
+    links = quasi_velocities.rows(lagrangian.kinematics, rates, links)
     equations = with_reactions(lagrangian.kinematics, equations, links)
     return Derivation(
         model=model,

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from eomgen.algebra import functions, normal
-from eomgen.algebra.closed import ClosedForm, Evaluation
+from eomgen.algebra.closed import ClosedForm, Evaluation, to_sympy
 from eomgen.algebra.normal import Form, Kernel, is_zero
 from eomgen.model import Coordinate
 
@@ -24,12 +24,15 @@ BRANCHES = (1, -1)
 
 @dataclass(frozen=True)
 class Elimination:
-    """q = formula(branch), defined while `discriminant` >= 0 (None: always)."""
+    """q = formula(branch), defined while `discriminant` >= 0 (None: always).
+
+    The formulas are not multiplied out: each is a few products of the residual's coefficients.
+    """
 
     coordinate: Coordinate
     rows: tuple[str, ...]
-    branches: tuple[Form, ...]  # one formula, or one for each of `BRANCHES`
-    discriminant: Form | None = None
+    branches: tuple[sp.Expr, ...]  # one formula, or one for each of `BRANCHES`
+    discriminant: sp.Expr | None = None
 
 
 @dataclass(frozen=True)
@@ -169,7 +172,7 @@ def _linear(
             continue
         if _is_steady(algebra, found[1], moving):
             value = -found.get(0, algebra.number(0)) / found[1]
-            return _solved(algebra, residuals, residual, Elimination(q, residual.rows, (value,)))
+            return _solved(algebra, residuals, residual, (q, value))
     return None
 
 
@@ -184,10 +187,10 @@ def _quadratic(
             continue
         if _is_steady(algebra, found[2], moving):
             zero = algebra.number(0)
-            a, b, c = found[2], found.get(1, zero), found.get(0, zero)
-            discriminant = b * b - 4 * (a * c)
-            root = functions.sqrt(discriminant)
-            values = tuple((root * sign - b) / (2 * a) for sign in BRANCHES)
+            a, b, c = (to_sympy(f) for f in (found[2], found.get(1, zero), found.get(0, zero)))
+            discriminant = b * b - 4 * a * c
+            root = sp.sqrt(discriminant)
+            values = tuple((sign * root - b) / (2 * a) for sign in BRANCHES)
             solved = Elimination(q, residual.rows, values, discriminant)
             return _without(residuals, residual, solved)
     return None
@@ -200,12 +203,12 @@ def _harmonic(
         found = harmonics(algebra, residual.form, q)
         if found is None or any(_holds(algebra, r.form, q) for r in _others(residuals, residual)):
             continue
-        a, b, c = found
+        a, b, c = (to_sympy(f) for f in found)
         # cos q = (-a c - s b d)/r^2, sin q = (-b c + s a d)/r^2, d^2 = r^2 - c^2, r^2 = a^2 + b^2
         discriminant = a * a + b * b - c * c
-        d = functions.sqrt(discriminant)
+        d = sp.sqrt(discriminant)
         values = tuple(
-            functions.apply("atan2", a * d * sign - b * c, -(a * c) - b * d * sign)
+            sp.atan2(sign * a * d - b * c, -a * c - sign * b * d, evaluate=False)
             for sign in BRANCHES
         )
         return _without(residuals, residual, Elimination(q, residual.rows, values, discriminant))
@@ -225,11 +228,12 @@ def _dyad(
     determinant = a1 * b2 - a2 * b1
     if not _is_steady(algebra, determinant, moving):
         return None
-    cosine = (c2 * b1 - c1 * b2) / determinant
-    sine = (a2 * c1 - a1 * c2) / determinant
+    # d cos q and d sin q with the determinant d, whose sign is not known: nothing is divided
+    cosine, sine = c2 * b1 - c1 * b2, a2 * c1 - a1 * c2
     rows = holding[0].rows + holding[1].rows
-    value = functions.apply("atan2", sine, cosine)
-    rest = Residual(rows, cosine * cosine + sine * sine - 1)
+    sign, y, x = (to_sympy(f) for f in (determinant, sine, cosine))
+    value = sp.atan2(y * sign, x * sign, evaluate=False)
+    rest = Residual(rows, cosine * cosine + sine * sine - determinant * determinant)
     return Step(Elimination(q, rows, (value,)), (*_others(residuals, *holding), rest))
 
 
@@ -237,12 +241,13 @@ def _solved(
     algebra: ClosedForm,
     residuals: Sequence[Residual],
     residual: Residual,
-    elimination: Elimination,
+    found: tuple[Coordinate, Form],
 ) -> Step:
     """The coordinate put into the other residuals."""
-    put = substitution(algebra, {elimination.coordinate.symbol: elimination.branches[0]})
+    coordinate, value = found
+    put = substitution(algebra, {coordinate.symbol: value})
     left = tuple(Residual(r.rows, put(r.form)) for r in _others(residuals, residual))
-    return Step(elimination, left)
+    return Step(Elimination(coordinate, residual.rows, (to_sympy(value),)), left)
 
 
 def _without(residuals: Sequence[Residual], residual: Residual, elimination: Elimination) -> Step:

@@ -3,6 +3,10 @@
 M q'' + h = Q + J' lambda,   J q'' + gamma = 0,   hence with  S = J M^-1 J'
 
 S lambda = -gamma - J M^-1 (Q - h),   q'' = M^-1 (Q - h) + M^-1 J' lambda   (Schur complement).
+
+Where a motion without inertia is one that the constraints forbid, M is singular and M + w J'J is
+not. On J q'' = -gamma the first is the second with lambda + w gamma in the place of lambda, for any
+weight w: the solution is the same.
 """
 
 from __future__ import annotations
@@ -27,6 +31,7 @@ class Schur:
     matrix: tuple[tuple[Node, ...], ...]  # S
     free: tuple[Node, ...]  # M^-1 (Q - h)
     pivots: ldl.Pivots
+    weight: Fraction = Fraction(0)  # w, where M + w J'J stands for M
 
 
 @dataclass(frozen=True)
@@ -38,15 +43,31 @@ class Solution:
     pivots: ldl.Pivots
 
 
-def schur(equations: Equations[Node], rows: Sequence[Row[Node]]) -> Schur:
+def inertia(
+    equations: Equations[Node], rows: Sequence[Row[Node]], weight: Fraction = Fraction(0)
+) -> tuple[tuple[Node, ...], ...]:
+    """M + w J'J."""
+    if not weight:
+        return equations.mass_matrix
+    columns = list(zip(*(row.jacobian for row in rows), strict=True))
+    return tuple(
+        tuple(entry + weight * dot(left, right) for entry, right in zip(line, columns, strict=True))
+        for line, left in zip(equations.mass_matrix, columns, strict=True)
+    )
+
+
+def schur(
+    equations: Equations[Node], rows: Sequence[Row[Node]], weight: Fraction = Fraction(0)
+) -> Schur:
     """The Schur complement of a scene; the rows are independent."""
     load = [q - h for q, h in zip(equations.generalized_forces, equations.bias, strict=True)]
-    solved, pivots = ldl.solve(equations.mass_matrix, load, *(row.jacobian for row in rows))
+    matrix = inertia(equations, rows, weight)
+    solved, pivots = ldl.solve(matrix, load, *(row.jacobian for row in rows))
     free, *columns = (tuple(s) for s in solved)
     size = range(len(rows))
     lower = [[dot(rows[i].jacobian, columns[j]) for j in range(i + 1)] for i in size]
-    matrix = tuple(tuple(lower[max(i, j)][min(i, j)] for j in size) for i in size)
-    return Schur(tuple(rows), tuple(columns), matrix, free, pivots)
+    complement = tuple(tuple(lower[max(i, j)][min(i, j)] for j in size) for i in size)
+    return Schur(tuple(rows), tuple(columns), complement, free, pivots, weight)
 
 
 def solve(system: Schur, rate: Fraction = Fraction(0)) -> Solution:
@@ -55,18 +76,23 @@ def solve(system: Schur, rate: Fraction = Fraction(0)) -> Solution:
     rate: Baumgarte's alpha [1/s]: J q'' + gamma + 2 alpha phi' + alpha^2 phi = 0, and
     J q'' + gamma + alpha a = 0 for a rate constraint a. It injects or removes energy.
     """
+    wanted = [row.gamma + stabilised(row, rate) for row in system.rows]
     right = [
-        -(row.gamma + stabilised(row, rate)) - dot(row.jacobian, system.free) for row in system.rows
+        -w - dot(row.jacobian, system.free) for row, w in zip(system.rows, wanted, strict=True)
     ]
-    (multipliers,), pivots = ldl.solve(system.matrix, right)
-    accelerations = _corrected(system.free, system.columns, multipliers)
-    return Solution(accelerations, tuple(multipliers), system.pivots + pivots)
+    (shares,), pivots = ldl.solve(system.matrix, right)
+    accelerations = _corrected(system.free, system.columns, shares)
+    multipliers = tuple(s + system.weight * w for s, w in zip(shares, wanted, strict=True))
+    return Solution(accelerations, multipliers, system.pivots + pivots)
 
 
 def responses(
     system: Schur, matrix: Sequence[Sequence[Node]], columns: Sequence[Sequence[Node]]
 ) -> tuple[list[list[Node]], ldl.Pivots]:
-    """a of M a - J' lambda = b, J a = c for every column (b, c), and the pivots."""
+    """a of M a - J' lambda = b, J a = c for every column (b, c), and the pivots.
+
+    matrix: M, or M + w J'J in its place, which changes lambda only.
+    """
     size = len(matrix)
     free, _ = ldl.solve(matrix, *(column[:size] for column in columns))
     rights = [

@@ -18,7 +18,13 @@ from dataclasses import dataclass
 import sympy as sp
 
 from eomgen.algebra.graph import Node
-from eomgen.mechanics import newton_euler_loads, newton_euler_tree, newton_euler_unknown, speeds
+from eomgen.mechanics import (
+    newton_euler_inside,
+    newton_euler_loads,
+    newton_euler_tree,
+    newton_euler_unknown,
+    speeds,
+)
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.newton_euler_loads import Scene
 from eomgen.mechanics.newton_euler_tree import Joint
@@ -59,6 +65,15 @@ def resultants(scene: Scene) -> dict[str, Wrench]:
     for twist in newton_euler_loads.twists(kinematics):
         none = tuple(kinematics.algebra.number(0) for _ in range(kinematics.dimensions))
         found[twist.body] = _less(found[twist.body], Wrench(none, twist.moment))
+    for joint, effort in newton_euler_loads.inside(kinematics):
+        force, moment = newton_euler_inside.wrench(kinematics, joint, effort)
+        origin = kinematics.origin(joint.body)
+        for body, sign in ((joint.body, 1), (joint.parent, -1)):
+            if body is not None:
+                arm = subtract(origin, kinematics.position(body))
+                both = add(lever(arm, force), moment)
+                acting = Wrench(tuple(sign * f for f in force), tuple(sign * m for m in both))
+                found[body] = _less(found[body], acting)
     return found
 
 

@@ -10,12 +10,13 @@ import sympy as sp
 
 from eomgen.algebra import ldl
 from eomgen.algebra.graph import Node
-from eomgen.mechanics import efforts, multipliers, newton_euler_tree
+from eomgen.mechanics import efforts, multipliers, newton_euler_inside, newton_euler_tree
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.efforts import Effort
 from eomgen.mechanics.elongation import Element, length, span
 from eomgen.mechanics.energies import has_potential
 from eomgen.mechanics.kinematics import Kinematics
+from eomgen.mechanics.newton_euler_inside import Inside
 from eomgen.mechanics.vectors import Vector, scale
 from eomgen.model import Drive, Model
 
@@ -153,6 +154,21 @@ def _axes(name: str | None, kinematics: Kinematics[Node]) -> str | None:
     return name if kinematics.dimensions == 3 else None
 
 
+def inside(kinematics: Kinematics[Node]) -> Iterator[tuple[Inside, Node]]:
+    """Loads that act in one joint, each with its force along the coordinate."""
+    model = kinematics.model
+    drives = ((d.along, kinematics.algebra.of(d.force)) for d in model.drives)
+    elements = (
+        (element.along, effort.force[0])
+        for element, effort in _elements(kinematics)
+        if element.along is not None
+    )
+    for along, force in (*elements, *drives):
+        found = newton_euler_inside.of(model, along)
+        if found is not None:
+            yield found, force
+
+
 def weight(kinematics: Kinematics[Node], mass: sp.Expr) -> Vector[Node]:
     """M g."""
     gravity = kinematics.vector(kinematics.model.gravity)
@@ -164,7 +180,7 @@ def unplaced(scene: Scene) -> Iterator[Unplaced]:
     model = scene.kinematics.model
     loads: tuple[Element | Drive, ...] = (*model.springs, *model.dampers, *model.drives)
     for element in loads:
-        if element.along is not None:
+        if element.along is not None and newton_euler_inside.of(model, element.along) is None:
             used = _coordinates(model, element.along)
             names = ", ".join(c.name for c in model.coordinates if c.symbol in used)
             yield Unplaced(element.name, f"{element.name} acts along {names}", used, along=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from eomgen.mechanics import newton_euler_loads, newton_euler_tree
+from eomgen.mechanics import newton_euler_loads, newton_euler_tree, speeds
 from eomgen.mechanics.newton_euler_loads import Scene, Unplaced
 from eomgen.mechanics.newton_euler_tree import Joint
 
@@ -112,16 +112,20 @@ def _dependent(scene: Scene, tree: Sequence[Joint]) -> Iterator[_Cause]:
 def _contacts(scene: Scene, tree: Sequence[Joint]) -> Iterator[_Cause]:
     """What presses or rubs in some modes only: the accelerations here are those without it."""
     model = scene.kinematics.model
+    for guide in model.guides:
+        why = f"every acceleration depends on whether {guide.name} sticks or slides"
+        yield _Cause(why, frozenset(j.body for j in tree))
     for constraint in model.constraints:
-        rubs = constraint.friction is not None and constraint.friction != 0
-        if constraint.kind == "unilateral" or rubs:
+        if constraint.kind == "unilateral":
             related = newton_euler_tree.related_by(model, constraint)
             touched = _touched(tree, Unplaced(constraint.name, "", related))
             yield _Cause(f"the force of {constraint.name} depends on the contact", touched)
 
 
 def _coordinates(scene: Scene, jacobian: Sequence[object]) -> frozenset[sp.Symbol]:
-    """The coordinates that a row moves with."""
-    zero = scene.kinematics.algebra.number(0)
-    pairs = zip(scene.kinematics.model.coordinates, jacobian, strict=True)
-    return frozenset(c.symbol for c, entry in pairs if entry is not zero)
+    """The coordinates that the speeds of a row move."""
+    kinematics = scene.kinematics
+    zero, moving = kinematics.algebra.number(0), 0
+    for symbol, entry in zip(speeds.symbols(kinematics.model), jacobian, strict=True):
+        moving |= 0 if entry is zero else kinematics.algebra.of(symbol).leaves
+    return frozenset(symbol for symbol, r in kinematics.flow.rates.items() if r.leaves & moving)

@@ -11,7 +11,7 @@ from eomgen.algebra.closed import Evaluation
 from eomgen.algebra.normal import Form
 from eomgen.algebra.scalar import Algebra
 from eomgen.mechanics import motions, speeds
-from eomgen.mechanics.equations import Equation
+from eomgen.mechanics.equations import ConstraintRow, Equation
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.vectors import dot
 from eomgen.model import TIME, Coordinate, Model, Prescribed
@@ -53,6 +53,26 @@ def _projected(
         }
         result.append(Equation(speed.name, **parts))
     return (*result, *equations[len(own) :])
+
+
+def rows(
+    kinematics: Kinematics[Form], rates: tuple[Form, ...], found: tuple[ConstraintRow, ...]
+) -> tuple[ConstraintRow, ...]:
+    """Constraint rows over the speeds: J N u + ... = 0, and J N u' + gamma = 0."""
+    if not rates:
+        return found
+    model, algebra = kinematics.model, kinematics.algebra
+    substitute, one = _substitution(kinematics, rates), algebra.number(1)
+    coasting = {c.symbol: r for c, r in zip(model.coordinates, rates, strict=True)}
+    still = {s for c in model.coordinates for s in (c.symbol, c.rate)}
+    coasting |= {s: r for s, r in kinematics.flow.derivatives.items() if s not in still}
+    result = []
+    for row in found:
+        rate = substitute(row.rate)
+        jacobian = tuple(algebra.along(rate, {s.symbol: one}) for s in model.speeds)
+        gamma = algebra.along(rate, coasting)
+        result.append(replace(row, rate=rate, jacobian=jacobian, gamma=gamma))
+    return tuple(result)
 
 
 def _substitution(kinematics: Kinematics[Form], rates: tuple[Form, ...]) -> Callable[[Form], Form]:

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import CheckError, UsageError
+from eomgen.numerics import cache
 from eomgen.program import Function, Program
 from eomgen.render.names import prefix
 
@@ -108,6 +109,14 @@ def _build(files: Mapping[str, str], program: Program, real: str, folder: Path) 
     command = [*compiler(), *OPTIONS, *define, *sources, "-o", str(library), "-lm"]
     _compile(command)
     return Compiled(ctypes.CDLL(str(library)), program, real)
+
+
+def build_cached(files: Mapping[str, str], program: Program, real: str = "double") -> Compiled:
+    """As `build`, but a library that was built before from the same text is loaded again."""
+    key = cache.key([*files.items(), *compiler(), *OPTIONS, real])
+    library = f"{prefix(program.name)}_{real}.so"
+    folder = cache.folder(key, lambda place: _build(files, program, real, place))
+    return Compiled(ctypes.CDLL(str(folder / library)), program, real)
 
 
 def _compile(command: list[str]) -> None:

@@ -103,7 +103,7 @@ def flat(factors: Factors, form: Form) -> list[Term]:
     for monomial, waves in groups.items():
         parameters, motion, below = _monomial(factors, monomial)
         for powers, c in arrange_waves.shortest(waves, below, phases).items():
-            key, number = _with_waves(factors, (parameters, motion), powers, c)
+            key, number = _with_waves(factors, (parameters, motion), powers, Fraction(c))
             total[key] = total.get(key, Fraction(0)) + number
     return [Term(number, *key) for key, number in total.items() if number]
 

@@ -11,15 +11,15 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from functools import cache, lru_cache
 from itertools import product
-from math import comb, lcm
+from math import comb, gcd, lcm
 
-from eomgen.algebra.normal import Wave
+from eomgen.algebra.normal import Number, Wave, exact
 
 Ripple = tuple[bool, Wave]  # True: sine
-Spelling = dict[tuple[tuple[Ripple, int], ...], Fraction]  # powers of ripples -> coefficient
-Waves = Mapping[Ripple, Fraction]  # the empty wave is 1
+Spelling = dict[tuple[tuple[Ripple, int], ...], Number]  # powers of ripples -> coefficient
+Waves = Mapping[Ripple, Number]  # the empty wave is 1
 Exponents = tuple[tuple[int, int], ...]  # (of cosine, of sine) for each angle
-Polynomial = dict[Exponents, Fraction]
+Polynomial = dict[Exponents, Number]
 
 LARGEST = 400  # monomials that a spelling in sines and cosines may pass through
 
@@ -33,24 +33,31 @@ def shortest(waves: Waves, below: Mapping[Ripple, int], phases: frozenset[int]) 
         ((ripple, c),) = waves.items()
         return _single(ripple, c)
     ordered = sorted(waves)
-    scale = waves[ordered[0]]
-    unit = tuple((ripple, waves[ripple] / scale) for ripple in ordered)
+    scale = _content(waves, ordered[0])
+    unit = tuple((ripple, exact(waves[ripple] / scale)) for ripple in ordered)
     found = _shortest(unit, tuple(sorted(below.items())), phases)
     return {powers: c * scale for powers, c in found.items()}
 
 
+def _content(waves: Waves, first: Ripple) -> Fraction:
+    """What leaves whole numbers without a common divisor, the first of them positive."""
+    values = waves.values()
+    size = Fraction(gcd(*(c.numerator for c in values)), lcm(*(c.denominator for c in values)))
+    return -size if waves[first] < 0 else size
+
+
 @lru_cache(maxsize=4096)
 def _shortest(
-    waves: tuple[tuple[Ripple, Fraction], ...],
+    waves: tuple[tuple[Ripple, Number], ...],
     below: tuple[tuple[Ripple, int], ...],
     phases: frozenset[int],
 ) -> Spelling:
-    """The same for waves in order, the first with the coefficient 1: they come again and again."""
+    """The same for waves in order, with whole coefficients: they come again and again."""
     spellings = [_divided(s, dict(below)) for s in _candidates(dict(waves), dict(below), phases)]
     return min(spellings, key=_measure)
 
 
-def _single(ripple: Ripple, c: Fraction) -> Spelling:
+def _single(ripple: Ripple, c: Number) -> Spelling:
     sine, wave = ripple
     if not wave:
         return {(): c}
@@ -81,14 +88,14 @@ def _by_support(
 ) -> Iterator[Spelling]:
     """Each set of angles by itself, the constant going with one of them or with none."""
     for host in (None, *supports):
-        parts: dict[tuple[int, ...], dict[Ripple, Fraction]] = {}
+        parts: dict[tuple[int, ...], dict[Ripple, Number]] = {}
         for (sine, wave), c in waves.items():
             support = tuple(angle for angle, _ in wave) or host or ()
             parts.setdefault(support, {})[sine, wave] = c
         spelling: Spelling = {}
         for part in parts.values():
             for powers, c in shortest(part, {}, phases).items():
-                spelling[powers] = spelling.get(powers, Fraction(0)) + c
+                spelling[powers] = spelling.get(powers, 0) + c
         yield {powers: c for powers, c in spelling.items() if c}
 
 
@@ -140,7 +147,7 @@ def _expanded(waves: Waves, units: Mapping[int, Fraction]) -> Polynomial:
         for angle, unit in units.items():
             parts = _turned(parts, int(Fraction(factors.get(angle, 0)) / unit))
         for exponents, value in parts[sine].items():
-            result[exponents] = result.get(exponents, Fraction(0)) + value
+            result[exponents] = result.get(exponents, 0) + value
     return result
 
 
@@ -157,7 +164,7 @@ def _turned(parts: tuple[Polynomial, Polynomial], n: int) -> tuple[Polynomial, P
         for exponents, c in left.items():
             for pair, factor in right.items():
                 key = (*exponents, pair)
-                target[key] = target.get(key, Fraction(0)) + sign * c * factor
+                target[key] = target.get(key, 0) + sign * c * factor
     return above, below
 
 
@@ -168,7 +175,7 @@ def _eliminated(polynomial: Polynomial, choice: tuple[bool, ...]) -> Polynomial:
         for exponents, c in polynomial.items():
             for pair, factor in _without_square(exponents[place], sine):
                 key = (*exponents[:place], pair, *exponents[place + 1 :])
-                result[key] = result.get(key, Fraction(0)) + c * factor
+                result[key] = result.get(key, 0) + c * factor
         polynomial = result
     return {exponents: c for exponents, c in polynomial.items() if c}
 
@@ -213,7 +220,7 @@ def _divided(spelling: Spelling, below: Mapping[Ripple, int]) -> Spelling:
         for ripple, exponent in below.items():
             exponents[ripple] = exponents.get(ripple, 0) - exponent
         key = tuple(sorted(((r, e) for r, e in exponents.items() if e), key=_sine_first))
-        result[key] = result.get(key, Fraction(0)) + c
+        result[key] = result.get(key, 0) + c
     return {powers: c for powers, c in result.items() if c}
 
 
@@ -222,18 +229,18 @@ def _sine_first(power: tuple[Ripple, int]) -> tuple[Wave, bool]:
     return wave, not sine
 
 
-def _measure(spelling: Spelling) -> tuple[int, int, Fraction]:
+def _measure(spelling: Spelling) -> tuple[int, int, Number]:
     """(powers in denominators, number of terms, degree with a common factor counted once)."""
     negative = sum(-e for powers in spelling for _, e in powers if e < 0)
     degrees = [{r: _degree(r) * abs(e) for r, e in powers} for powers in spelling]
     shared = sum(
-        min(d.get(ripple, Fraction(0)) for d in degrees)
-        for ripple in (degrees[0] if degrees else ())
+        min(d.get(ripple, 0) for d in degrees) for ripple in (degrees[0] if degrees else ())
     )
-    degree = sum((sum(d.values(), Fraction(0)) for d in degrees), Fraction(0))
+    degree = sum(sum(d.values()) for d in degrees)
     return negative, len(spelling), degree - shared * (len(spelling) - 1)
 
 
+@cache
 def _degree(ripple: Ripple) -> Fraction:
     """The degree in sines and cosines of single angles."""
     return sum((abs(Fraction(f)) for _, f in ripple[1]), Fraction(0))

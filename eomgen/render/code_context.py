@@ -45,6 +45,7 @@ def interface(program: Program, dialect: Dialect) -> dict[str, Any]:
         "title": program.title,
         "digest": program.digest,
         "version": program.version,
+        "engine": program.engine,
         "coordinates": symbols(program.coordinates, reserved),
         "speeds": symbols(program.speeds, reserved),
         "inputs": symbols(program.inputs, reserved),

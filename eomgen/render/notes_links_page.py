@@ -8,7 +8,6 @@ from fractions import Fraction
 from eomgen.algebra.normal import Form
 from eomgen.mechanics import speeds
 from eomgen.mechanics.equations import multiplier_name, virtual_name
-from eomgen.model import Constraint
 from eomgen.render import arrange, notes_data, tree
 from eomgen.render.arrange import Arranger
 from eomgen.render.notes_links import LinkCard, Links
@@ -78,6 +77,7 @@ def _card(page: Page, card: LinkCard) -> dict[str, object]:
         "name": style.words(card.name),
         "text": style.words(card.text),
         "is_bilateral": card.is_bilateral,
+        "is_rough": card.name in [c.name for c in page.derivation.model.guides],
         "answers": ", ".join(_answers(page, card)),
         "equations": tuple(_equations(page, card)),
         "virtual": tuple(_virtual(page, card)),
@@ -151,27 +151,23 @@ def _remarks(page: Page, card: LinkCard) -> Iterator[str]:
     if card.is_bilateral:
         said = words["multiplier" if len(card.rows) == 1 else "multipliers"]
         yield said.format(symbols=_symbols(page, map(multiplier_name, card.rows)))
+        yield from _given(page, card)
     elif card.rows:
-        yield from _contact(page, card)
+        yield words["contact"]
+        yield from _given(page, card)
     if card.is_stated_in_rates and card.is_holonomic and None in card.hidden:
         yield words["hidden_unknown"]
     if card.redundant:
         yield words["redundant"].format(rows=page.style.words(", ".join(card.redundant)))
 
 
-def _contact(page: Page, card: LinkCard) -> Iterator[str]:
-    """Contact and flight, and what the spec says of impact and of friction."""
-    yield page.words["contact"]
-    stated = next(c for c in page.derivation.model.constraints if c.name == card.name)
-    for word, value in _given(stated):
-        yield page.words[word].format(value=page.style.inline(notes_data.closed(page, value)))
-
-
-def _given(stated: Constraint) -> Iterator[tuple[str, object]]:
-    if stated.restitution is not None:
-        yield "restitution", stated.restitution
-    if stated.friction is not None:
-        yield "friction", stated.friction
+def _given(page: Page, card: LinkCard) -> Iterator[str]:
+    """What the spec says of impact and of friction."""
+    stated = next((c for c in page.derivation.model.constraints if c.name == card.name), None)
+    for word in ("restitution", "friction"):
+        value = getattr(stated, word, None)
+        if value is not None:
+            yield page.words[word].format(value=page.style.inline(notes_data.closed(page, value)))
 
 
 def _symbols(page: Page, names: Iterable[str]) -> str:

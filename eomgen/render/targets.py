@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 import jinja2
 
-from eomgen.render import code_context, notes, statics
+from eomgen.render import code_context, notes, statics, steps_context
 from eomgen.render.names import module
 from eomgen.render.templating import fill
 
@@ -42,6 +42,16 @@ TARGETS = {
         "C99 header and source",
         {"{name}.h": "c/model.h.j2", "{name}.c": "c/model.c.j2"},
         code_context.c,
+    ),
+    "c-steps": Target(
+        "C99 header and source of integrators, beside those of the equations",
+        {"{name}_steps.h": "c/steps.h.j2", "{name}_steps.c": "c/steps.c.j2"},
+        steps_context.c,
+    ),
+    "c-driver": Target(
+        "C source that runs the steps for `simulate`",
+        {"{name}_driver.c": "c/driver.c.j2"},
+        steps_context.c,
     ),
     "python": Target(
         "Python module that needs NumPy only",

@@ -80,6 +80,10 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "flight": "These are the equations of flight. In contact, each closed gap adds its"
         " multiplier, times the coefficient of the virtual displacement in its virtual form, to the"
         " generalized force.",
+        "rough": "These are the equations without friction. In each mode it adds its generalized"
+        " force: while a constraint sticks, what keeps the touching point at rest, smaller than the"
+        " coefficient times the normal force; while it slides, the coefficient times the normal"
+        " force, against the slip.",
         "speeds": "The speeds are",
         "rates": "so that the rates are",
         "turns": "There is no coordinate {math}: it stands for a virtual turn about an axis of the"
@@ -184,6 +188,10 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "flight": "Estas son las ecuaciones en vuelo. En contacto, cada holgura cerrada suma a la"
         " fuerza generalizada su multiplicador por el coeficiente del desplazamiento virtual en su"
         " forma virtual.",
+        "rough": "Estas son las ecuaciones sin rozamiento. En cada modo este suma su fuerza"
+        " generalizada: mientras una ligadura se adhiere, la que mantiene en reposo el punto de"
+        " contacto, menor que el coeficiente por la fuerza normal; mientras desliza, el coeficiente"
+        " por la fuerza normal, contra el deslizamiento.",
         "speeds": "Las velocidades generalizadas son",
         "rates": "de modo que",
         "turns": "No hay una coordenada {math}: designa un giro virtual alrededor de un eje del"

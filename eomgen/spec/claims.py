@@ -2,8 +2,8 @@
 
 import sympy as sp
 
-from eomgen.dimension import ENERGY, NONE, Dimension
-from eomgen.model import Claim, Expectation, Output
+from eomgen.dimension import ENERGY, NONE, TIME, Dimension
+from eomgen.model import Claim, Expectation, Output, Simulation
 from eomgen.spec import quaternions
 from eomgen.spec.formulas import (
     constant,
@@ -115,6 +115,25 @@ def _output(entry: Entry, scene: Scene) -> Output:
     formula = scalar(node, scene, Wanted("output", f"output '{name}'", NONE, by))
     scene.names[name] = known
     return Output(name, formula, description(entry.value, text_of(unit_node), known))
+
+
+def simulation(node: Node | None, scene: Scene) -> Simulation:
+    """The method, step and formulation that the author wants."""
+    if not isinstance(node, Mapping):
+        return Simulation()
+    step = field(node, "step")
+    return Simulation(
+        text_of(node.get("method")) or None,
+        None if step is None else scene.ledger.attempt(_step, step, scene),
+        text_of(node.get("formulation")) or None,
+    )
+
+
+def _step(node: Scalar, scene: Scene) -> sp.Expr:
+    value = constant(node, scene, Wanted("initial value", "the step", TIME))
+    if value.is_positive is not True:
+        raise Mistake(node, "E508", "a step must be positive")
+    return value
 
 
 def expectation(node: Node | None, scene: Scene) -> Expectation:

@@ -23,7 +23,7 @@ INSTEAD = {  # of a sign that does not go with the kind
     "nonholonomic": "a relation between rates is an equation",
     "unilateral": "write 'holonomic' for an equation",
 }
-ONE_SIDED = ("restitution", "friction")
+GOES_WITH = {"restitution": ("unilateral",), "friction": ("unilateral", "holonomic")}
 RELATES = "a constraint is a relation between coordinates"
 BOUNDS = {"restitution": (0, 1), "friction": (0, sp.oo)}
 
@@ -45,13 +45,23 @@ def _constraint(entry: Entry, movers: frozenset[str], scene: Scene) -> Constrain
     kind = only(name, keys, tuple(SIGNS))
     node = field(keys, kind)
     assert node is not None
-    options = {key: scene.ledger.attempt(_option, key, name, keys, scene) for key in ONE_SIDED}
+    options = {key: scene.ledger.attempt(_option, key, name, keys, scene) for key in GOES_WITH}
     reaction = scene.ledger.attempt(_reaction, keys, scene)
     relation = _relation(node, kind)
     ends = _ends(relation, movers, scene) if kind == "holonomic" else None
+    if ends and options["friction"] is not None:
+        _refuse_rough_pin(keys)
     residuals = () if ends else (RESIDUALS[kind](relation, scene),)
     text, said = " ".join(node.text.split()), description(keys)
     return Constraint(name, kind, residuals, text, ends, reaction, **options, description=said)
+
+
+def _refuse_rough_pin(keys: Mapping) -> None:
+    """A pin has no surface."""
+    entry = next(e for e in keys.entries if e.key.text == "friction")
+    message = "'friction' needs a surface, and places that are set equal have none"
+    hint = "write one relation between positions, or a moment for the friction of a bearing"
+    raise Mistake(entry.key, "E112", message, hint)
 
 
 def _relation(node: Scalar, kind: str) -> Relation:
@@ -162,13 +172,14 @@ def _reaction(keys: Mapping, scene: Scene) -> str | None:
 
 
 def _option(key: str, name: str, keys: Mapping, scene: Scene) -> sp.Expr | None:
-    """The number of a unilateral constraint under the key, within its bounds."""
+    """The number under the key, within its bounds."""
     entry = next((e for e in keys.entries if e.key.text == key), None)
     if entry is None:
         return None
-    if keys.get("unilateral") is None:
+    if all(keys.get(kind) is None for kind in GOES_WITH[key]):
         code = "E112" if keys.whole else CONSEQUENCE
-        raise Mistake(entry.key, code, f"'{key}' goes with 'unilateral' only")
+        kinds = " or ".join(f"'{kind}'" for kind in GOES_WITH[key])
+        raise Mistake(entry.key, code, f"'{key}' goes with {kinds} only")
     found = scalar(entry.value, scene, Wanted(key, f"the {key} of {name}", NONE))
     value = value_of(tree_of(entry.value, scene), scene)
     least, most = BOUNDS[key]

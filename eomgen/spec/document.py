@@ -96,6 +96,7 @@ def _model(whole: Mapping, root: Mapping, ledger: Ledger) -> Model:
         guess=claims.guess(_table(root, "initial"), scene),
         range=claims.ranges(_table(root, "range"), scene),
         outputs=claims.outputs(_table(root, "outputs"), scene),
+        simulation=claims.simulation(root.get("simulate"), scene),
         expect=claims.expectation(root.get("expect"), scene),
         with_units=scene.units_seen,
     )

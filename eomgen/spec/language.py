@@ -197,7 +197,9 @@ CONSTRAINT = Record(
         "restitution": Key(
             "of a unilateral one: rebound over approach speed, from 0 to 1", FORMULA
         ),
-        "friction": Key("of a unilateral one: Coulomb's coefficient, not negative", FORMULA),
+        "friction": Key(
+            "of a surface, unilateral or holonomic: Coulomb's coefficient, not negative", FORMULA
+        ),
         "latex": LATEX,
         "about": ABOUT,
     }
@@ -208,6 +210,21 @@ GUESS = "beside constraints: about where coordinates and rates are that the cons
 INITIAL = {"guess": Key(GUESS, Table(QUANTITY))}
 INITIAL_VALUE = Either((QUANTITY, Items(QUANTITY, least=4, most=4)))  # four of a quaternion
 EQUILIBRIUM = Either((Table(QUANTITY), Items(Table(QUANTITY))))
+
+METHODS = (
+    "semi-euler", "verlet", "rk4", "dopri5", "rosenbrock2", "midpoint",
+    "dop853", "lsoda", "radau", "cvode",
+)  # fmt: skip
+FORMULATIONS = ("minimal", "nullspace", "multiplier")
+SIMULATION = Record(
+    {
+        "method": Key("the integrator", Leaf("choice", METHODS)),
+        "step": Key("of a method with fixed steps", QUANTITY),
+        "formulation": Key(
+            "of the equations; a free scene has `minimal`", Leaf("choice", FORMULATIONS)
+        ),
+    }
+)
 
 LANGUAGE = Record(
     {
@@ -271,6 +288,7 @@ LANGUAGE = Record(
             "the region in which the scene moves", Table(Items(QUANTITY, least=2, most=2))
         ),
         "outputs": Key("named formulas", Table(_described("formula", "the formula"))),
+        "simulate": Key("how `eomgen simulate` runs it, unless told otherwise", SIMULATION),
         "expect": Key(
             "the author's claims, checked",
             Record(

@@ -11,6 +11,7 @@ from eomgen.spec.scope import Scene
 from eomgen.spec.structure import is_misspelt
 
 OTHER_KINDS = ("nonholonomic", "unilateral")
+TOUCHING = ("unilateral", "friction")
 
 
 def check(whole: Mapping, root: Mapping, scene: Scene) -> None:
@@ -22,7 +23,8 @@ def check(whole: Mapping, root: Mapping, scene: Scene) -> None:
     for mistake in (
         *_roles(root, _has_holonomic(whole)),
         *_guesses(root, are_there),
-        *_speeds(root, are_there),
+        *_speeds(root, whole),
+        *_quaternions(root, are_there),
     ):
         scene.ledger.note(mistake)
 
@@ -73,12 +75,20 @@ def _guesses(root: Mapping, are_there: bool) -> Iterator[Mistake]:
             yield Mistake(entry.key, "E513", message, "write it as an initial value")
 
 
-def _speeds(root: Mapping, are_there: bool) -> Iterator[Mistake]:
+def _speeds(root: Mapping, whole: Mapping) -> Iterator[Mistake]:
+    """Contacts are written over the rates."""
+    touching = any(
+        isinstance(node, Mapping) and any(node.get(key) is not None for key in TOUCHING)
+        for node in _given(whole)
+    )
     for entry in root.entries:
-        if entry.key.text == "speeds" and are_there:
-            message = "not supported yet: speeds beside constraints"
+        if entry.key.text == "speeds" and touching:
+            message = "not supported: speeds beside unilateral constraints or friction"
             hint = "leave 'speeds' out and write the equations in the rates"
             yield Mistake(entry.key, "E602", message, hint)
+
+
+def _quaternions(root: Mapping, are_there: bool) -> Iterator[Mistake]:
     for entry in _entries(root, "coordinates") if are_there else ():
         if quaternions.is_quaternion(entry.value):
             message = "not supported yet: a quaternion beside constraints"

@@ -194,7 +194,7 @@ def si_unit(dimension: Dimension) -> str:
     return ("*".join(above) or "1") + (f"/{bottom}" if below else "")
 
 
-def _power(name: str, exponent: Fraction) -> str:
+def _power(name: str, exponent: Fraction | int) -> str:
     if exponent == 1:
         return name
     return f"{name}^{exponent}" if exponent.denominator == 1 else f"{name}^({exponent})"

@@ -1,0 +1,1 @@
+"""Speed against accuracy: every formulation, integrator, step and precision of one scene."""

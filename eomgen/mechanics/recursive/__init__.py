@@ -1,0 +1,1 @@
+"""Recursion over a tree of places: inverse dynamics, mass matrix, articulated bodies."""

@@ -1,0 +1,199 @@
+"""Places in space: frames in their own axes, points of position formulas in world axes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from eomgen.algebra.graph import Node
+from eomgen.mechanics import rotation
+from eomgen.mechanics.recursive.draft import Draft
+from eomgen.mechanics.recursive.formulas import Moving
+from eomgen.mechanics.recursive.places import Hung
+from eomgen.mechanics.recursive.records import GROUND, NoTree, Place, Point, SpatialFrame
+from eomgen.mechanics.recursive.steps import Flat, FreeRotation, Rotation, Shift, Step, Turn
+from eomgen.mechanics.vectors import Matrix, Vector, add, scale, transform, transpose
+from eomgen.model import Quaternion
+from eomgen.model import Turn as Turned
+
+
+def ground(draft: Draft) -> Place:
+    """The place that stands still."""
+    return Place("the ground", SpatialFrame((draft.zero,) * 3), GROUND, (), {})
+
+
+@dataclass
+class _Path:
+    """Steps from a base, with the spin and the columns at their end."""
+
+    draft: Draft
+    name: str
+    base: int
+    spin: Vector[Node]
+    steps: list[Step] = field(default_factory=list)
+    columns: dict[int, Vector[Node]] = field(default_factory=dict)
+
+    def end(self) -> int:
+        """The place where the steps so far lead."""
+        if not self.steps:
+            return self.base
+        kind = SpatialFrame(self.spin)
+        place = Place(self.name, kind, self.base, tuple(self.steps), self.columns)
+        return self.draft.put(place)
+
+    def cut(self, moves: bool) -> None:
+        """End a place where another motion begins: what shares a coordinate is joined later."""
+        if moves and self.columns:
+            self.base, self.steps, self.columns = self.end(), [], {}
+
+    def go(self, step: Step, own: dict[int, Vector[Node]]) -> None:
+        """One step more; `own` are its columns."""
+        moved = {c: step.motion(column) for c, column in self.columns.items()}
+        for c, column in own.items():
+            moved[c] = add(moved[c], column) if c in moved else column
+        self.steps.append(step)
+        self.columns = moved
+
+
+def point(draft: Draft, name: str) -> int:
+    """The place of a point or of a mass centre; in a body's axes where it is given in them."""
+    if name not in draft.points:
+        draft.points[name] = _point(draft, name)
+    return draft.points[name]
+
+
+def _point(draft: Draft, name: str) -> int:
+    hung = draft.words.hung(draft.words.place(name))
+    offset = draft.clock.moving(hung.components)
+    if hung.on is not None:
+        return _on_frame(draft, name, frame(draft, hung.on), offset)
+    return _world_point(draft, name, hung, offset)
+
+
+def _world_point(draft: Draft, name: str, hung: Hung, offset: Moving) -> int:
+    """A place at an offset in world axes."""
+    base = GROUND if hung.point is None else point(draft, hung.point)
+    if hung.point is not None and _is_nothing(draft, offset):
+        return base
+    step = Flat(_to_world(draft, base), offset.drift)
+    return draft.put(Place(name, Point(3), base, (step,), dict(offset.columns)))
+
+
+def _is_nothing(draft: Draft, offset: Moving) -> bool:
+    return all(v is draft.zero for v in offset.values)
+
+
+def _to_world(draft: Draft, base: int) -> Matrix[Node]:
+    """The velocity of a place in world axes."""
+    algebra = draft.kinematics.algebra
+    if isinstance(draft.kind(base), Point):
+        return rotation.identity(algebra, 3)
+    known = draft.turned_as.get(base)
+    axes = draft.kinematics.axes(known) if known else rotation.identity(algebra, 3)
+    return tuple((*(draft.zero,) * 3, *row) for row in axes)
+
+
+def _on_frame(draft: Draft, name: str, base: int, offset: Moving) -> int:
+    """A place in the axes of its base."""
+    if _is_nothing(draft, offset):
+        return base
+    path = _Path(draft, name, base, draft.spin(base))
+    _shift(path, offset)
+    place = path.end()
+    if base in draft.turned_as:
+        draft.turned_as[place] = draft.turned_as[base]
+    return place
+
+
+def frame(draft: Draft, name: str) -> int:
+    """The place of a body's frame."""
+    if name not in draft.frames:
+        draft.frames[name] = _frame(draft, name)
+        draft.turned_as.setdefault(draft.frames[name], name)
+    return draft.frames[name]
+
+
+def _frame(draft: Draft, name: str) -> int:
+    body = draft.words.bodies[name]
+    if body.frame.along:
+        raise NoTree(f"the rod {name} has no axes of its own in space")
+    hung = draft.words.hung(body.frame.origin)
+    offset = draft.clock.moving(hung.components)
+    path = _start(draft, name, hung, offset)
+    for turn in body.frame.turns:
+        if isinstance(turn, Quaternion):
+            _turn_freely(path, turn)
+        else:
+            _turn(path, turn)
+    return path.end()
+
+
+def _start(draft: Draft, name: str, hung: Hung, offset: Moving) -> _Path:
+    """The way to the origin of a frame; where that moves in world axes it is a point first."""
+    if hung.on is not None:
+        base = frame(draft, hung.on)
+        path = _Path(draft, name, base, draft.spin(base))
+        if not _is_nothing(draft, offset):
+            _shift(path, offset)
+        return path
+    if hung.point is None and offset.is_still:
+        return _Path(draft, name, GROUND, draft.spin(GROUND))
+    path = _Path(draft, name, _world_point(draft, name, hung, offset), (draft.zero,) * 3)
+    rows = _to_world(draft, path.base)
+    still = (draft.zero,) * len(rows[0])
+    path.steps.append(Flat((still,) * 3 + rows, (draft.zero,) * 6))
+    return path
+
+
+def _shift(path: _Path, offset: Moving) -> None:
+    zero = path.draft.zero
+    path.cut(bool(offset.columns))
+    step = Shift(path.spin, offset.values, offset.rate, offset.drift)
+    path.go(step, {c: (zero, zero, zero, *column) for c, column in offset.columns.items()})
+
+
+def _turn(path: _Path, turn: Turned) -> None:
+    draft = path.draft
+    algebra, angle = draft.kinematics.algebra, draft.clock.moving([turn.angle])
+    axis = rotation.unit(algebra, turn.axis)
+    path.cut(bool(angle.columns))
+    (value,), (rate,), (drift,) = angle.values, angle.rate, angle.drift
+    step: Step
+    number = _aligned(axis, algebra.number(1))
+    if number is None:
+        matrix = rotation.about(algebra, axis, value)
+        path.spin = transform(transpose(matrix), path.spin)
+        step = Rotation(matrix, scale(rate, axis), scale(drift, axis), path.spin)
+    else:
+        sign = axis[number]
+        value, rate, drift = sign * value, sign * rate, sign * drift
+        sine, cosine = algebra.apply("sin", value), algebra.apply("cos", value)
+        still = Turn(number, sine, cosine, rate, drift, path.spin)
+        path.spin = still.motion((*path.spin, *path.spin))[:3]
+        step = Turn(number, sine, cosine, rate, drift, path.spin)
+    zero = draft.zero
+    own = {c: (*scale(slope, axis), zero, zero, zero) for c, (slope,) in angle.columns.items()}
+    path.spin = add(path.spin, scale(angle.rate[0], axis))
+    path.go(step, own)
+
+
+def _turn_freely(path: _Path, quaternion: Quaternion) -> None:
+    """A ball joint: its speeds are the angular velocity in the axes after the turn."""
+    algebra, zero = path.draft.kinematics.algebra, path.draft.zero
+    path.cut(True)
+    matrix = rotation.quaternion(algebra, [algebra.of(s) for s in quaternion.symbols])
+    spin = tuple(algebra.of(s) for s in quaternion.speeds)
+    before = transform(transpose(matrix), path.spin)
+    units = rotation.identity(algebra, 3)
+    numbers = [path.draft.clock.numbers[s] for s in quaternion.speeds]
+    own = {n: (*axis, zero, zero, zero) for n, axis in zip(numbers, units, strict=True)}
+    path.spin = add(before, spin)
+    path.go(FreeRotation(matrix, spin, (zero,) * 3, before), own)
+
+
+def _aligned(axis: Sequence[Node], one: Node) -> int | None:
+    """The number of the coordinate axis along which a unit vector is; None for skew ones."""
+    number, parts = None, [i for i, a in enumerate(axis) if a is not one.graph.zero]
+    if len(parts) == 1 and axis[parts[0]] in (one, -one):
+        number = parts[0]
+    return number
