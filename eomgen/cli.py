@@ -16,6 +16,8 @@ import click
 from eomgen import __version__, files
 from eomgen.cli_chart import chart
 from eomgen.cli_common import (
+    code_options,
+    code_style,
     compensated_option,
     complain,
     decoded,
@@ -27,6 +29,7 @@ from eomgen.cli_common import (
     integrator_option,
     language_option,
     list_functions_option,
+    method_option,
     print_files,
     reporting,
     spec_argument,
@@ -67,13 +70,15 @@ def commands() -> None:
 @language_option
 @templates_option
 @formulation_option
+@method_option
 @format_option
 def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
     """Show the equations of motion of SPEC in the terminal."""
     from eomgen.outputs import Wish, rendered
 
     wish = Wish(("text",), wishes["language"], wishes["templates"], wishes["steps"])
-    (text,) = rendered(studied(spec, format_, Wanted(formulation, notes=True)), wish).values()
+    choice = Wanted(formulation, notes=True, method=wishes["method"])
+    (text,) = rendered(studied(spec, format_, choice), wish).values()
     click.echo(text, nl=False)
 
 
@@ -100,8 +105,10 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 @language_option
 @templates_option
 @formulation_option
+@method_option
 @click.option("--baumgarte", metavar="ALPHA", help="Stabilise multipliers [1/s], only if asked.")
 @click.option("--step", metavar="H", help="The step [s] that caps ALPHA at 0.2/H.")
+@code_options
 @integrator_option
 @compensated_option
 @functions_option
@@ -116,6 +123,14 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
     if wishes["compensated"] and not integrators:
         raise UsageError("--compensated is how integrators add: say --integrator too")
     targets += ("c-steps",) if integrators else ()
+    with reporting(format_, files.shown(spec)):
+        choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
+        notes = not NOTES.isdisjoint(targets)
+        if wishes["method"] and not notes:
+            raise UsageError("--method is how the notes derive: add -t latex or -t text")
+        choice = replace(choice, notes=notes, method=wishes["method"])
+        style = code_style(targets, wishes)
+    study = studied(spec, format_, choice)
     wish = Wish(
         targets,
         wishes["language"],
@@ -124,11 +139,9 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
         functions,
         integrators,
         wishes["compensated"],
+        style,
     )
-    with reporting(format_, files.shown(spec)):
-        choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
-        choice = replace(choice, notes=not NOTES.isdisjoint(targets))
-    made = rendered(studied(spec, format_, choice), wish)
+    made = rendered(study, wish)
     if output == files.STANDARD:
         print_files(made)
         return

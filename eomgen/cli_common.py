@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from eomgen import files
 from eomgen.errors import EomgenError, SpecError, UsageError
-from eomgen.wanted import AUTO, NAMES, Wanted
+from eomgen.wanted import AUTO, METHODS, NAMES, Wanted
 
 if TYPE_CHECKING:
+    from eomgen.render.code_context import Style
     from eomgen.study import Study
 
 FORMATS = click.Choice(["text", "json", "github"])
@@ -44,6 +45,11 @@ formulation_option = click.option(
     default="auto",
     show_default=True,
     help="Equations of a scene with constraints.",
+)
+method_option = click.option(
+    "--method",
+    type=click.Choice(METHODS),
+    help="Formalism that is shown, all that apply are compared.  [default: Lagrange's]",
 )
 
 integrator_option = click.option(
@@ -90,6 +96,40 @@ list_functions_option = click.option(
     callback=_list_functions,
     help="Show what --functions can name, and stop.",
 )
+
+
+C_OPTIONS = {
+    "fast_trig": "Own sine and cosine in the C: at most 2 units of the last place, vectorisable.",
+    "batch": "C functions for many states at once, as structure of arrays.",
+}
+
+
+def code_options(command: Any) -> Any:
+    """The options of generated code."""
+    fold = click.option(
+        "--fold", is_flag=True, help="Parameters with a value become numbers in C and Python."
+    )
+    for name, about in C_OPTIONS.items():
+        command = click.option(_spelled(name), is_flag=True, help=about)(command)
+    return fold(command)
+
+
+def _spelled(name: str) -> str:
+    return "--" + name.replace("_", "-")
+
+
+def code_style(targets: Sequence[str], wishes: Mapping[str, Any]) -> Style:
+    """How code is written.
+
+    Raises:
+        UsageError: an option of C is given, but no C is written.
+    """
+    from eomgen.render.code_context import Style
+
+    for name in C_OPTIONS:
+        if wishes[name] and "c" not in targets:
+            raise UsageError(f"{_spelled(name)} is about C, which is not written; add -t c")
+    return Style(**{name: wishes[name] for name in ("fold", *C_OPTIONS)})
 
 
 def print_files(made: dict[str, str]) -> None:

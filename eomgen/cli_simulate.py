@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import signal
 import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Event
 from typing import IO, TYPE_CHECKING, Any
 
 import click
@@ -148,14 +150,13 @@ def _run(job: Job, stream: IO[str] | None) -> int:
         click.echo(line, err=True)
     interrupted, faults = False, []
     try:
-        _follow(job, stream)
+        with _interruptible() as asked:
+            interrupted = _follow(job, stream, asked)
     except CheckError as error:
         faults.append(str(error))
-    except KeyboardInterrupt:
-        interrupted = True
-        click.echo(
-            f"interrupted: what was computed up to here is written ({job.rows} rows)", err=True
-        )
+    if interrupted:
+        told = f"interrupted: what was computed up to here is written ({job.rows} rows)"
+        click.echo(told, err=True)
     for line in job.ending():
         click.echo(line, err=True)
     faults += job.faults()
@@ -166,8 +167,24 @@ def _run(job: Job, stream: IO[str] | None) -> int:
     return INTERRUPTED if interrupted else int(bool(faults))
 
 
-def _follow(job: Job, stream: IO[str] | None) -> None:
-    """Write the rows as they come; a bar where a person waits."""
+@contextmanager
+def _interruptible() -> Iterator[Event]:
+    """Set by a first Ctrl-C, so that a row is written before the end; a second one ends at once."""
+    asked = Event()
+
+    def ask(number: int, frame: object) -> None:
+        asked.set()
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    before = signal.signal(signal.SIGINT, ask)
+    try:
+        yield asked
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _follow(job: Job, stream: IO[str] | None, asked: Event) -> bool:
+    """Write the rows as they come, a bar where a person waits; whether it was interrupted."""
     if stream is not None:
         stream.write(job.head())
     started, bar = time.monotonic(), None
@@ -176,6 +193,8 @@ def _follow(job: Job, stream: IO[str] | None) -> None:
             if stream is not None and text:
                 stream.write(text)
                 stream.flush()
+            if asked.is_set():
+                return True
             if bar is None and sys.stderr.isatty() and time.monotonic() - started > PATIENCE:
                 bar = click.progressbar(length=1000, file=sys.stderr, label="t")
                 bar.__enter__()
@@ -184,3 +203,4 @@ def _follow(job: Job, stream: IO[str] | None) -> None:
     finally:
         if bar is not None:
             bar.render_finish()
+    return False

@@ -112,10 +112,11 @@ def _interpreter(source: Program, model: Model) -> Call:
 
 def _compiled(source: Program, model: Model) -> Call:
     from eomgen.numerics import compiled
+    from eomgen.render.code_context import coded
     from eomgen.render.targets import TARGETS, render
     from eomgen.render.templating import environment
 
-    library = compiled.build(render(source, TARGETS["c"], environment()), source)
+    library = compiled.build(render(coded(source), TARGETS["c"], environment()), source)
 
     def call(name: str, state: State) -> list[Any]:
         a = arguments(state, model, float)
@@ -128,10 +129,11 @@ def _compiled(source: Program, model: Model) -> Call:
 
 def _python(source: Program, model: Model) -> Call:
     from eomgen.numerics import compiled
+    from eomgen.render.code_context import coded
     from eomgen.render.targets import TARGETS, render
     from eomgen.render.templating import environment
 
-    (text,) = render(source, TARGETS["python"], environment()).values()
+    (text,) = render(coded(source), TARGETS["python"], environment()).values()
     module = compiled.load_python(text, source.name)
 
     def call(name: str, state: State) -> list[Any]:

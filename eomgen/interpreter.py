@@ -21,6 +21,7 @@ from eomgen.program import (
     Expression,
     Function,
     Number,
+    Program,
     Read,
     RequirePositive,
     Solve,
@@ -30,7 +31,7 @@ from eomgen.program import (
 
 __all__ = [
     "EXACT", "FLOAT", "NUMPY", "Arithmetic", "NotDefined", "SingularMassMatrix",
-    "mpmath_arithmetic", "run",
+    "call", "mpmath_arithmetic", "run",
 ]  # fmt: skip
 
 
@@ -91,3 +92,13 @@ def run(
         return [memory.value(result) for result in function.results]
     except (ZeroDivisionError, ValueError, OverflowError) as error:
         raise NotDefined(f"{function.name} is not defined at this state: {error}") from error
+
+
+def call(
+    program: Program, name: str, arguments: Mapping[str, Sequence[Any]], arithmetic: Arithmetic
+) -> list[Any]:
+    """The results of a function of a program, prepared or not; arguments and errors as of `run`."""
+    given = dict(arguments)
+    if program.prepare is not None:
+        given["constants"] = run(program.prepare, given, arithmetic)
+    return run(program.function(name), given, arithmetic)

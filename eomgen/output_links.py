@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from eomgen.analysis.cards import Card, Report
+from eomgen.compile import Machine
 from eomgen.formulation import Formulation
+from eomgen.mechanics import contact_forms
+from eomgen.mechanics import contacts as mechanics_contacts
+from eomgen.mechanics.contact_forms import ContactForms
 from eomgen.render.notes_links import Combination, LinkCard, Links
 
 SENTENCES = {
@@ -52,3 +56,10 @@ def _card(card: Card, report: Report) -> LinkCard:
         growth=() if card.is_holonomic else report.integrability.growth,
         redundant=card.redundant,
     )
+
+
+def contacts(machine: Machine) -> tuple[ContactForms, ...]:
+    """The one-sided constraints in closed form, with the points where friction acts."""
+    found = mechanics_contacts.of(machine)
+    points = {c.name: c.touch.point for c in found if c.touch is not None}
+    return contact_forms.of(machine.model, points)

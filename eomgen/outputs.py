@@ -11,7 +11,13 @@ from typing import Any
 
 from eomgen.errors import EomgenError, UsageError
 from eomgen.integrators.steps import Steps
+from eomgen.mechanics import free_bodies
+from eomgen.mechanics.contact_forms import ContactForms
+from eomgen.mechanics.free_bodies import FreeBodies
+from eomgen.program import Program
+from eomgen.render.code_context import Style, coded
 from eomgen.render.notes import Notes
+from eomgen.render.notes_links import Links
 from eomgen.render.targets import TARGETS, Named, render
 from eomgen.render.templating import environment
 from eomgen.spec.report import escaped
@@ -29,19 +35,36 @@ class Wish:
     functions: tuple[str, ...] = ()  # of C and Python; (): the standard ones
     integrators: tuple[str, ...] = ()
     compensated: bool = False
+    style: Style = Style()
 
 
 def _notes(study: Study, wish: Wish) -> Named:
     line = check_line(study.report, wish.language)
-    shown = None
+    shown: Links | None = None
+    touching: tuple[ContactForms, ...] = ()
     if study.links is not None:
-        from eomgen.output_links import links
+        from eomgen.output_links import contacts, links
 
+        touching = contacts(study.machine)
         shown = links(study.links.scene.report, study.links.chosen, wish.language)
-    return Notes(study.derivation, wish.language, line, wish.steps, shown)
+    worked = study.worked if study.is_worked_apart else None
+    free = _free_bodies(study, wish)
+    return Notes(study.derivation, wish.language, line, wish.steps, shown, worked, free, touching)
+
+
+def _free_bodies(study: Study, wish: Wish) -> FreeBodies | None:
+    """What holds the bodies, where the notes show it: Newton's page does, the text with steps."""
+    if study.worked is not None and isinstance(study.worked.steps, FreeBodies):
+        return study.worked.steps
+    return free_bodies.short(study.model) if wish.steps or "latex" in wish.targets else None
 
 
 def _program(study: Study, wish: Wish) -> Named:
+    return coded(_chosen(study, wish), wish.style)
+
+
+def _chosen(study: Study, wish: Wish) -> Program:
+    """The program with the functions that were asked for, and those that integrators call."""
     steps = _steps(study, wish) if wish.integrators else None
     program = study.program if steps is None else steps.program
     if not wish.functions:
@@ -78,14 +101,28 @@ def rendered(study: Study, wish: Wish) -> dict[str, str]:
     templates = environment(wish.templates)
     made: dict[str, str] = {}
     for target in dict.fromkeys(wish.targets):
-        made |= render(SUBJECTS[target](study, wish), TARGETS[target], templates)
+        made |= render(SUBJECTS[target](study, wish), TARGETS[_page(study, target)], templates)
     return made
 
 
+def _page(study: Study, target: str) -> str:
+    """The row of the table of targets: that of the formalism, where it has pages of its own."""
+    method = study.worked.name if study.is_worked_apart and study.worked is not None else ""
+    return f"{target}-{method}" if f"{target}-{method}" in TARGETS else target
+
+
+TITLES = {
+    "newton": "Newton",
+    "dalembert": "d'Alembert",
+    "lagrange": "Lagrange",
+    "lagrange1": "{lagrange1}",
+    "kane": "Kane",
+}
 WORDS = {
     "en": {
         "checked": "checked",
         "routes": "Lagrange = Newton-Euler",
+        "lagrange1": "Lagrange of the first kind",
         "energies": "Lagrange in closed form = Lagrange on the graph",
         "recursion": "Lagrange by differentiation = recursive Newton-Euler",
         "projection": "d'Alembert = recursive Newton-Euler",
@@ -101,6 +138,7 @@ WORDS = {
     "es": {
         "checked": "comprobado",
         "routes": "Lagrange = Newton-Euler",
+        "lagrange1": "Lagrange de primera especie",
         "energies": "Lagrange en forma cerrada = Lagrange en el grafo",
         "recursion": "Lagrange por derivación = Newton-Euler recursivo",
         "projection": "d'Alembert = Newton-Euler recursivo",
@@ -122,8 +160,9 @@ def check_line(report: Report, language: str) -> str:
     states = words["states"].format(states=found.states, error=bound(found.error))
     digits = words["digits"].format(digits=found.digits) if found.digits > 16 else ""
     proven = f"{words['proven']} " if found.proven else ""
+    routes = _routes(report, words)
     parts = [
-        f"{words[report.routes]}, {proven}{states}{digits}",
+        f"{routes}, {proven}{states}{digits}",
         words["power"].format(error=bound(report.power)),
     ]
     if report.identity is not None:
@@ -135,6 +174,13 @@ def check_line(report: Report, language: str) -> str:
     if report.claims:
         parts.append(words["claims"].format(claims=report.claims))
     return f"{words['checked']}: " + "; ".join(parts)
+
+
+def _routes(report: Report, words: dict[str, str]) -> str:
+    """What was compared with what."""
+    if len(report.principles) > 1:
+        return " = ".join(TITLES[name].format(**words) for name in report.principles)
+    return words[report.routes]
 
 
 def bound(error: float) -> str:

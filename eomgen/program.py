@@ -2,7 +2,8 @@
 
 Every target renders it, the interpreter defines what it means, and nothing behind it knows
 mechanics. Every function of a program has the arguments t, state = (coordinates, speeds), inputs
-and parameters; some have the accelerations u', derivatives of the speeds, behind the state.
+and parameters; some have the accelerations u', derivatives of the speeds, behind the state. Those
+of a prepared program also read the constants which `prepare` makes of the parameters.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Read:
-    """One component of an argument of `ARGUMENTS`; of `time` the index is 0."""
+    """One component of an argument of `ARGUMENTS`, or of the `constants`; of `time` that is 0."""
 
     argument: str
     index: int
@@ -96,6 +97,17 @@ class Solve:
 Statement = Assign | RequirePositive | Solve
 
 
+def operands(statement: Statement) -> tuple[Expression, ...]:
+    """The expressions that a statement reads."""
+    match statement:
+        case Assign(_, expression):
+            return (expression,)
+        case RequirePositive(value, scale):
+            return (value, scale)
+        case Solve(_, matrix, right):
+            return matrix + right
+
+
 @dataclass(frozen=True)
 class Function:
     """One function: statements, then its results in row-major order of `shape`.
@@ -136,6 +148,8 @@ class Program:
     outputs: tuple[Variable, ...]
     functions: tuple[Function, ...]
     engine: str = ""  # how accelerations are found, and what that costs
+    prepare: Function | None = None  # from the parameters alone: the `constants` of the functions
+    folded: tuple[Variable, ...] = ()  # parameters that have become numbers in the functions
 
     def function(self, name: str) -> Function:
         """The function of that name."""

@@ -7,7 +7,7 @@ text ─ spec.read ─► Model ─┬─ lagrange.derive ─► Derivation (clo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from eomgen import compile
@@ -30,10 +30,11 @@ from eomgen.spec import read
 from eomgen.wanted import AUTO, Wanted
 
 if TYPE_CHECKING:
+    from eomgen.mechanics.principles import Worked
     from eomgen.study_linked import LinkedStudy
 
 
-# coordinates; above, a scene is proven on the graph unless notes are asked for
+# degrees of freedom; above, a scene is proven on the graph unless notes are asked for
 LARGEST_CLOSED = {"line": 40, "plane": 16, "solid": 6}
 
 
@@ -47,6 +48,7 @@ class Report:
     claims: int  # of the author, all found to hold
     routes: str  # which two derivations were compared, a key of `outputs.WORDS`
     formulations: tuple[str, ...] = ()  # of a linked scene, found to agree
+    principles: tuple[str, ...] = ()  # formalisms that were compared, where one was asked for
     warnings: tuple[str, ...] = ()  # what is true and yet may surprise
     identity: float | None = None  # of inverse after forward dynamics, where that was checked
 
@@ -61,6 +63,16 @@ class Study:
     program: Program
     report: Report
     links: LinkedStudy | None = None  # where the scene has constraints
+    worked: Worked | None = None  # the formalism that was asked for
+
+    @property
+    def is_worked_apart(self) -> bool:
+        """Whether a formalism was asked for that is not the one shown as ever.
+
+        That is Lagrange's, of the first kind for a linked set of coordinates.
+        """
+        usual = {"lagrange", "lagrange1"} if self.derivation.constraints else {"lagrange"}
+        return self.worked is not None and self.worked.name not in usual
 
     @property
     def derivation(self) -> Derivation:
@@ -103,11 +115,29 @@ def of_model(model: Model, wanted: Wanted = AUTO) -> Study:
         # imported where it is needed: the analysis of constraints brings NumPy
         from eomgen import study_linked
 
-        return _linked(study_linked.of_model(model, wanted))
+        return _by(_linked(study_linked.of_model(model, wanted)), wanted.method)
+    return _by(_free(model, wanted), wanted.method)
+
+
+def _free(model: Model, wanted: Wanted) -> Study:
+    """The study of a scene that has no constraints."""
     machine = compile.machine_of(model)
     derivation = _closed(machine, wanted)
     report = recursed(machine) if derivation is None else checked(derivation, machine)
     return Study(model, derivation, machine, compile.program(machine), report)
+
+
+def _by(study: Study, method: str | None) -> Study:
+    """The study with the formalism that was asked for, all that apply compared."""
+    if method is None:
+        return study
+    # only a user who asks for a formalism waits for all of them
+    from eomgen.checks import principles
+
+    drawn = samples.draw(study.model)
+    found = principles.compare(study.derivation, study.machine, drawn, method)
+    report = replace(study.report, agreement=found.agreement, principles=found.names)
+    return replace(study, report=report, worked=found.worked)
 
 
 def _closed(machine: compile.Machine, wanted: Wanted) -> Derivation | None:
@@ -118,7 +148,7 @@ def _closed(machine: compile.Machine, wanted: Wanted) -> Derivation | None:
     """
     model = machine.model
     needed = wanted.notes or machine.engine is None
-    if not needed and len(model.coordinates) > LARGEST_CLOSED[model.space]:
+    if not needed and len(speeds.symbols(model)) > LARGEST_CLOSED[model.space]:
         return None
     try:
         return lagrange.derive(model)

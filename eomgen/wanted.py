@@ -11,16 +11,21 @@ NAMES = ("auto", "minimal", "nullspace", "multiplier")
 LARGEST = Fraction(1, 5)  # alpha * h: above, Baumgarte's terms cost the integrator its order
 
 
+METHODS = ("newton", "dalembert", "lagrange", "lagrange1", "kane")
+
+
 @dataclass(frozen=True)
 class Wanted:
     """A formulation of `NAMES`; baumgarte: alpha [1/s], zero for none.
 
     notes: people will read the closed form; else a scene too large for one needs none.
+    method: one of `METHODS`, which is shown and compared with the others; None: as ever.
     """
 
     formulation: str = "auto"
     baumgarte: Fraction = Fraction(0)
     notes: bool = False
+    method: str | None = None
 
 
 AUTO = Wanted()

@@ -1,14 +1,14 @@
 """Shipped specs with constraints, each with multipliers and its admissible states, for tests."""
 
-from dataclasses import replace
 from functools import cache, cached_property
 
 import numpy as np
 from scenes import machine_of
 
-from eomgen import compile, compile_contacts
+from eomgen import compile, compile_contacts, formulation
 from eomgen.algebra.arithmetic import FLOAT, evaluate
 from eomgen.analysis import admissible, cards
+from eomgen.checks import links
 from eomgen.interpreter import run
 from eomgen.mechanics import machine
 from eomgen.program import Read
@@ -23,9 +23,8 @@ class Scene:
     def __init__(self, plain):
         self.model = plain.model
         self.report = cards.report(plain)
-        dropped = self.report.freedom.dropped
-        kept = tuple(row.name for row in plain.rows if row.name not in dropped)
-        self.machine = replace(plain, kept=kept)
+        self.linked = formulation.linked(plain, self.report)
+        self.machine, self.links = self.linked.machine, self.linked.links
         self.names = [c.name for c in self.model.coordinates]
         self.basis = self.report.freedom.basis
 
@@ -35,7 +34,8 @@ class Scene:
 
     def numbers(self, nodes, state, arithmetic=FLOAT):
         """Values of nodes over all coordinates and rates."""
-        return values(self.machine, nodes, state, (*state.coordinates, *state.rates), arithmetic)
+        columns = (*state.coordinates, *links.speeds_of(self.linked, state))
+        return values(self.machine, nodes, state, columns, arithmetic)
 
     def accelerations(self, state, arithmetic=FLOAT):
         return np.array(self.numbers(self.machine.accelerations, state, arithmetic))

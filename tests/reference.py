@@ -10,7 +10,7 @@ import numpy as np
 from scenes import FREE, LINKED, model_of, program_of, study_of
 
 from eomgen import interpreter
-from eomgen.checks import samples
+from eomgen.checks import links, samples
 
 STATES = 5
 DIGITS = 50
@@ -70,7 +70,10 @@ def admissible(case):
     program, model = written(case), model_of(stem(case))
     places = {c.name: [s.coordinates[i] for s in states] for i, c in enumerate(model.coordinates)}
     rates = {c.rate.name: [s.rates[i] for s in states] for i, c in enumerate(model.coordinates)}
+    scene = study_of(stem(case)).links.scene
     moving = places | rates
+    own = [links.speeds_of(scene, s) for s in states]
+    moving |= {s.name: [row[i] for row in own] for i, s in enumerate(model.speeds)}
     return {
         "time": [[float(s.time) for s in states]],
         "state": [

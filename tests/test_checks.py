@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import cached_property
 
 import pytest
-from scenes import LINKED, SHIPPED, SLOW, each
+from scenes import LINKED, SHIPPED, SLOW, each, expecting
 from studies import PENDULUM, model, study
 
 from eomgen import compile
@@ -16,7 +16,7 @@ from eomgen.mechanics import efforts, lagrange
 from eomgen.mechanics.recursive import rigid
 from eomgen.mechanics.vectors import Vector
 from eomgen.spec import read
-from eomgen.study import of_text
+from eomgen.study import of_model, of_text
 
 STIFF = {"flyball_governor": 4e-12}  # its springs cancel: 8e5 N/m
 
@@ -184,3 +184,30 @@ def test_random_is_not_shared_with_the_caller() -> None:
     before = random.getstate()
     samples.draw(model("slider_pendulum"))
     assert random.getstate() == before
+
+
+@pytest.mark.parametrize(
+    ("name", "claim"),
+    [
+        ("rolling_disc_upright", "theta'' = 0"),
+        ("rolling_disc_upright", "phi'' = 0"),
+        ("mass_on_sphere", "sin((x*y'' - y*x'')/g/R) = 0"),
+    ],
+)
+def test_a_single_term_that_vanishes_is_no_round_off(name: str, claim: str) -> None:
+    """In doubles it is all of its own size; in 50 digits it is nothing."""
+    claiming = read(expecting(name, f"  equations:\n    - {claim}\n"), f"{name}.yaml")
+    assert of_model(claiming).report.claims == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "claim"),
+    [
+        ("rolling_disc_upright", "theta'' = 1e-13*phi'^2"),
+        ("mass_leaving_sphere", "x'' = 1e-14*g"),
+    ],
+)
+def test_a_term_that_is_small_and_not_zero_is_refused(name: str, claim: str) -> None:
+    claiming = read(expecting(name, f"  equations:\n    - {claim}\n"), f"{name}.yaml")
+    with pytest.raises(CheckError, match="does not hold on the motion"):
+        of_model(claiming)

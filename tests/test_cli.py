@@ -17,8 +17,8 @@ from eomgen import __version__, study
 from eomgen.cli import commands
 
 COMMANDS = [
-    "chart", "check", "derive", "evaluate", "examples", "generate", "import", "new", "regressor", "schema",
-    "simulate", "statics", "templates",
+    "chart", "check", "derive", "evaluate", "examples", "generate", "import", "new", "regressor",
+    "schema", "simulate", "statics", "templates",
 ]  # fmt: skip
 EQUATION = "m l² φ″ + d φ′ + m l g sin φ = τ"
 STATE = {"coordinates": {"phi": "0.1"}, "rates": {"phi": 2}, "inputs": {"tau": 0.5}}
@@ -378,3 +378,31 @@ def test_a_terminal_without_unicode_is_no_accident():
     code, said, complained = finished("derive", "-", text=PENDULUM, PYTHONIOENCODING="ascii")
     assert (code, complained) == (0, "")
     assert said
+
+
+def test_a_formalism_is_chosen_and_all_are_compared(call):
+    said = call("derive", SHIPPED["slider_pendulum_free"], "--method", "newton")
+    assert said.code == 0
+    assert "(2)  0 = N_slider − S_bob cos φ − m_A g" in said.output
+    assert "checked: Newton = d'Alembert = Lagrange = Lagrange of the first kind" in said.output
+
+
+def test_a_formalism_that_a_scene_has_not_is_wrong_input(call):
+    said = call("generate", SHIPPED["central_force"], "--method", "newton")
+    assert said.code == 2
+    assert "--method newton does not apply: the scene has no bodies" in said.errors
+    assert not list(Path().iterdir())
+
+
+def test_the_formalism_changes_the_notes_and_not_the_code(call):
+    spec = SHIPPED["slider_pendulum_free"]
+    for folder, more in (("plain", ()), ("kane", ("--method", "kane"))):
+        assert call("generate", spec, "-o", folder, *more).code == 0
+    plain, kane = ({f.name: f.read_bytes() for f in Path(n).iterdir()} for n in ("plain", "kane"))
+    assert [n for n in plain if plain[n] != kane[n]] == ["slider_pendulum_free.tex"]
+
+
+def test_a_formalism_without_notes_is_wrong_input(call):
+    said = call("generate", SHIPPED["simple_pendulum"], "-t", "c", "--method", "kane")
+    assert said.code == 2
+    assert "--method is how the notes derive" in said.errors

@@ -30,10 +30,14 @@ def test_an_imported_robot_is_checked_and_generated(call):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["scara", "wheels"])
-def test_an_imported_arm_is_derived_twice(call, name):
-    call("import", FOLDER / f"{name}.urdf", "-o", "arm.yaml")
-    assert "checked: Lagrange = Newton-Euler" in call("check", "arm.yaml").output
+@pytest.mark.parametrize(
+    ("name", "freedom"), [("scara", 4), ("arm_7r", 7), ("quadruped", 12), ("satellite", 8)]
+)
+def test_an_imported_robot_is_derived_twice(call, name, freedom):
+    call("import", FOLDER / f"{name}.urdf", "-o", "robot.yaml")
+    said = call("check", "robot.yaml").output
+    assert f"{freedom} degrees of freedom" in said
+    assert "checked: " in said
 
 
 def test_standard_input_is_read_and_standard_output_is_a_spec(call):

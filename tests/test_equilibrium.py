@@ -5,6 +5,7 @@ from functools import cache
 from math import acos, atan, atan2, cos, hypot, isclose, pi, sin, sqrt
 
 import pytest
+from scenes import model_of
 
 from eomgen.algebra import normal
 from eomgen.analysis import equilibrium_find
@@ -481,3 +482,20 @@ def test_wrong_names_are_refused(numbers, words):
 def test_a_parameter_without_value_is_asked_for():
     with pytest.raises(UsageError, match="k has no value"):
         solve(scene("torsion"))
+
+
+@pytest.mark.parametrize(
+    ("name", "weight"), [("mass_on_sphere", 0.5 * 9.81), ("mass_leaving_sphere", 0.5 * 9.81)]
+)
+def test_a_named_relation_on_one_body_has_its_force_in_world_axes(name, weight):
+    """lambda d phi/d r carries the weight, whatever the gradient's length."""
+    (one,) = solve(model_of(name)).found
+    assert near([float(v) for v in one.reactions["normal_force"]], (0.0, 0.0, weight))
+
+
+def test_roots_that_a_contact_refuses_are_no_equilibria():
+    """At the lowest point of the sphere's outside the contact would have to pull."""
+    result = solve(model_of("mass_leaving_sphere"))
+    assert len(result.found) == 1
+    assert "2 are equilibria, but for 1 that the unilateral constraints refuse" in result.method
+    assert "refuse" not in solve(model_of("mass_on_sphere")).method

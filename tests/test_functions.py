@@ -18,7 +18,7 @@ from functions_of import (
     value,
 )
 from reference import CASES, stem, written
-from scenes import SLOW, study_of
+from scenes import SLOW, model_of, study_of
 
 from eomgen import compile, formulation, interpreter
 from eomgen.algebra import derive, jacobian
@@ -38,7 +38,18 @@ each_case = pytest.mark.parametrize(
 )
 
 
-@each_case
+MOVING = [c for c in CASES if not model_of(stem(c)).guides]  # a rough guide moves in a mode
+each_moving = pytest.mark.parametrize(
+    "case", [pytest.param(c, marks=pytest.mark.slow) if c in LONG else c for c in MOVING]
+)
+
+
+def test_a_rough_guide_has_no_state_derivative_to_differentiate():
+    with pytest.raises(UsageError, match="wire has friction: the state derivative is that of a"):
+        function("bead_on_rough_wire", "state_jacobian")
+
+
+@each_moving
 def test_jacobians_are_the_differences_of_the_state_derivative(case):
     given = states(case)[1]
     for name, argument in JACOBIANS.items():
@@ -63,7 +74,7 @@ def test_inverse_dynamics_after_the_motion_is_zero_and_gives_back_added_forces(c
         assert difference(chosen, more) < 1e-35
 
 
-@each_case
+@each_moving
 def test_inverse_dynamics_of_multipliers_leaves_the_forces_of_the_constraints(case):
     machine = compiled(case)
     if not machine.kept:
@@ -106,7 +117,7 @@ def test_the_regressor_knows_no_mass(case):
     assert not read & {machine.kinematics.algebra.bindings[s] for s in symbols}
 
 
-@each_case
+@each_moving
 def test_velocities_are_rates_of_positions_and_jacobians_carry_the_speeds(case):
     given = states(case)[3]
     rates = value(case, "state_derivative", given)[: len(compiled(case).model.coordinates)]

@@ -6,9 +6,9 @@ from fractions import Fraction
 import pytest
 
 from eomgen.errors import UsageError
+from eomgen.latex_name import checked
 from eomgen.render import latex_names, layout
 from eomgen.render.latex import latex
-from eomgen.render.latex_override import checked
 from eomgen.render.latex_style import display, equation, pairs
 from eomgen.render.latex_text import escaped, unit
 from eomgen.render.latex_width import width

@@ -81,9 +81,7 @@ def test_every_method_gives_the_accelerations_of_virtual_work(name, method):
     matrix, force = matrix_values(machine, wanted.mass_matrix), values(machine, right)
     solved = np.linalg.solve(np.moveaxis(matrix, 2, 0), force.T[..., None])[..., 0].T
     for tree in (machine.tree, lumped(machine.tree)):
-        applied = loads.of(machine.kinematics, tree)
-        rows = recursion.inverse_dynamics(tree, True, loads=applied)
-        found, _ = engine.METHODS[method](tree, [-r for r in rows])
+        found, _ = engine.METHODS[method](tree, loads.of(machine.kinematics, tree))
         conditioned = 1e-12 * np.linalg.cond(np.moveaxis(matrix, 2, 0))
         worst = np.max(np.abs(values(machine, found) - solved), axis=0)
         # a rounded force of size one is an acceleration of at most 1 / least eigenvalue
@@ -103,9 +101,8 @@ def test_the_engine_takes_the_cheapest_and_says_which(name):
     assert cost.operations(chosen.accelerations, prepared) == chosen.operations
     for tree in (machine.tree, lumped(machine.tree)):
         applied = loads.of(machine.kinematics, tree)
-        right = [-r for r in recursion.inverse_dynamics(tree, True, loads=applied)]
         for method in engine.METHODS.values():
-            assert cost.operations(method(tree, right)[0], prepared) >= chosen.operations
+            assert cost.operations(method(tree, applied)[0], prepared) >= chosen.operations
 
 
 def test_lumping_pays_and_changes_nothing():
@@ -255,3 +252,21 @@ def test_the_proof_of_a_large_scene_sees_a_forgotten_term(monkeypatch):
     monkeypatch.setattr(rigid, "wrench", forgetful)
     with pytest.raises(CheckError, match="differ"):
         study.of_text(arm(8), "chain.yaml")
+
+
+@pytest.mark.slow
+def test_the_command_line_of_a_scene_without_a_closed_form(call, tmp_path):
+    """Code and numbers without it; notes are refused, with the reason."""
+    (tmp_path / "arm.yaml").write_text(arm(8), encoding="utf-8")
+    checked = call("check", "arm.yaml")
+    assert checked.code == 0
+    said = "8 degrees of freedom; engine: composite inertias and L'DL, inertias lumped, "
+    assert f"arm.yaml: {said}" in checked.output
+    assert "checked: Lagrange by differentiation = recursive Newton-Euler, at 50" in checked.output
+    assert "inverse after forward dynamics = identity below 1e-1" in checked.output
+    assert call("generate", "arm.yaml", "-t", "c").code == 0
+    head = (tmp_path / "arm.c").read_text(encoding="utf-8")[:600]
+    assert " * Engine: composite inertias and L'DL, inertias lumped, " in head
+    refused = call("derive", "arm.yaml")
+    assert refused.code == 2
+    assert "the closed form of this scene takes more than" in refused.errors

@@ -105,10 +105,10 @@ def test_unused_values_go_and_pivots_stay():
 
 
 def test_new_names_avoid_those_of_the_program():
-    statements = (Assign("power_1", add(X, Y)),)
-    results = (op("power", add(Value("power_1"), n(1)), n(2)),)
+    statements = (Assign("inner_1", add(X, Y)),)
+    results = (op("power", add(Value("inner_1"), n(1)), n(2)),)
     lowered = lower(Function("f", "", (1,), statements, results))
-    assert [s.name for s in lowered.statements] == ["power_1", "power_2"]
+    assert [s.name for s in lowered.statements] == ["inner_1", "inner_2"]
 
 
 def test_names_are_identifiers_each_once():

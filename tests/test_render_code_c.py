@@ -9,6 +9,7 @@ import pytest
 from programs import PROGRAMS, arguments
 from tools import tool
 
+from eomgen.render.code_context import Style, coded
 from eomgen.render.names import prefix
 from eomgen.render.targets import TARGETS, render
 from eomgen.render.templating import environment
@@ -21,9 +22,21 @@ WARNINGS = """
 SANITIZERS = "-fsanitize=address,undefined,float-divide-by-zero -fno-sanitize-recover=all"
 
 
-def written(name, folder):
+STYLES = {
+    "plain": lambda program: program,
+    "prepared": lambda program: coded(program, Style(fast_trig=True, batch=True)),
+    "folded": lambda program: coded(program, Style(fold=True, batch=True)),
+    "in parts": lambda program: coded(program, Style(fast_trig=True, batch=True, longest=3)),
+}
+SLOW = ("folded", "in parts")
+styled = pytest.mark.parametrize(
+    "style", [pytest.param(s, marks=pytest.mark.slow if s in SLOW else ()) for s in STYLES]
+)
+
+
+def written(name, folder, style="plain"):
     """The C files of a fixture in a folder."""
-    files = render(PROGRAMS[name], TARGETS["c"], environment())
+    files = render(STYLES[style](PROGRAMS[name]), TARGETS["c"], environment())
     for file, text in files.items():
         (folder / file).write_text(text)
     return [folder / file for file in files if file.endswith(".c")]
@@ -35,10 +48,11 @@ def command(*words):
     return done.stdout
 
 
+@styled
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_no_compiler_has_a_word_to_say(name, compiler, tmp_path):
-    path, (source,) = tool(compiler), written(name, tmp_path)
+def test_no_compiler_has_a_word_to_say(name, compiler, style, tmp_path):
+    path, (source,) = tool(compiler), written(name, tmp_path, style)
     for option in ((), (f"-D{prefix(name).upper()}_FLOAT",)):
         command(path, *WARNINGS, *option, "-O2", "-c", source, "-o", tmp_path / "a.o")
 
@@ -46,7 +60,7 @@ def test_no_compiler_has_a_word_to_say(name, compiler, tmp_path):
 @pytest.mark.parametrize("compiler", ["g++", "clang++"])
 @pytest.mark.parametrize("name", ["slider_pendulum", "int", "lambda", "chain"])
 def test_the_header_is_also_c_plus_plus(name, compiler, tmp_path):
-    path, (source,) = tool(compiler), written(name, tmp_path)
+    path, (source,) = tool(compiler), written(name, tmp_path, "in parts")
     main = tmp_path / "main.cpp"
     include = f'#include "{name}.h"\n'
     main.write_text(include + include + f"int main() {{ return !{prefix(name)}_speed_names(); }}\n")
@@ -56,11 +70,16 @@ def test_the_header_is_also_c_plus_plus(name, compiler, tmp_path):
     command(tmp_path / "a")
 
 
-def test_static_analysis_finds_nothing(tmp_path):
+@styled
+def test_static_analysis_finds_nothing(style, tmp_path):
     path = tool("cppcheck")
-    sources = [source for name in PROGRAMS for source in written(name, tmp_path)]
-    command(path, "-q", "--std=c99", "--enable=all", "--error-exitcode=1",
-            "--suppress=missingIncludeSystem", "--suppress=unusedFunction", *sources)  # fmt: skip
+    sources = [source for name in PROGRAMS for source in written(name, tmp_path, style)]
+    # one precision at a time: else the size of an array is taken from one, an index from the other
+    floats = [f"{prefix(name).upper()}_FLOAT" for name in PROGRAMS]
+    for option in ("-D", "-U"):
+        command(path, "-q", "--std=c99", "--enable=all", "--error-exitcode=1",
+                "--suppress=missingIncludeSystem", "--suppress=unusedFunction",
+                *(option + name for name in floats), *sources)  # fmt: skip
 
 
 MAIN = """
@@ -71,7 +90,9 @@ int main(void)
     const {prefix}_real inputs[] = {{{inputs}}};
     const {prefix}_params p = {prefix}_default_parameters({arguments});
     {prefix}_real result[200];
+    {prefix}_model m;
     int status = 0;
+    {prefix}_prepare(&p, &m);
 {calls}
     return status;
 }}
@@ -82,11 +103,13 @@ def main_program(name):
     """A C program that calls every function of a fixture; its exit code adds up the statuses."""
     program, stem = PROGRAMS[name], prefix(name)
     _, state, inputs, _ = arguments(program, seed=0)
-    passed = {"time": "0", "accelerations": "state", "parameters": "&p"}
+    passed = {"time": "0", "accelerations": "state"}
     calls = [
-        f"    status += (int){stem}_{f.name}("
-        + ", ".join([*(passed.get(a, a) for a in f.arguments), "result);"])
+        f"    status += (int){stem}_{form}{f.name}("
+        + count
+        + ", ".join([*({**passed, "parameters": of}.get(a, a) for a in f.arguments), "result);"])
         for f in program.functions
+        for form, count, of in (("", "", "&p"), ("prepared_", "", "&m"), ("batch_", "1, ", "&m"))
     ]
     return MAIN.format(
         name=name,
@@ -98,9 +121,10 @@ def main_program(name):
     )
 
 
+@pytest.mark.parametrize("style", ["prepared", "in parts"])
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_sanitizers_find_nothing(name, tmp_path):
-    path, (source,) = tool("gcc"), written(name, tmp_path)
+def test_sanitizers_find_nothing(name, style, tmp_path):
+    path, (source,) = tool("gcc"), written(name, tmp_path, style)
     main = tmp_path / "main.c"
     main.write_text(main_program(name))
     command(path, "-std=c99", "-g", *SANITIZERS.split(), main, source, "-lm", "-o", tmp_path / "a")
@@ -109,8 +133,9 @@ def test_sanitizers_find_nothing(name, tmp_path):
 
 def test_nothing_is_kept_between_calls(tmp_path):
     """No heap, no globals: the object has no writable data and asks for no allocation."""
-    source = written("slider_pendulum", tmp_path) + written("chain", tmp_path)
-    for each in source:
+    names = ("slider_pendulum", "chain")
+    sources = [written(name, tmp_path, style) for name in names for style in STYLES]
+    for (each,) in sources:
         command(tool("gcc"), "-std=c99", "-fno-pie", "-c", each, "-o", tmp_path / "a.o")
         symbols = command(tool("nm"), tmp_path / "a.o").splitlines()
         kinds = {line.split()[-2] for line in symbols}
@@ -130,12 +155,16 @@ GENERATE = """
 import sys
 sys.path.insert(0, sys.argv[1])
 from programs import PROGRAMS
+from eomgen.render.code_context import Style, coded
 from eomgen.render.targets import TARGETS, render
 from eomgen.render.templating import environment
+from eomgen.render.code_context import Style, coded
 for program in PROGRAMS.values():
-    for name in ("c", "python"):
-        for file, text in render(program, TARGETS[name], environment()).items():
-            print(file, text)
+    everything = coded(program, Style(fold=True, fast_trig=True, batch=True, longest=3))
+    for subject in (program, coded(program), everything):
+        for name in ("c", "python"):
+            for file, text in render(subject, TARGETS[name], environment()).items():
+                print(file, text)
 """
 
 

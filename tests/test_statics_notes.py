@@ -232,6 +232,9 @@ SAID = (
     RIGID,
     "touching a, b: exact elimination: of 8 complex solutions 4 are equilibria, 2 of these outside"
     " the range; irrational constants were rounded to 30 digits",
+    "exact elimination: the equations contradict each other, so there is no equilibrium; touching"
+    " floor: exact elimination: of 2 complex solutions 2 are equilibria, but for 1 that the"
+    " unilateral constraints refuse",
     "every position is an equilibrium",
     "interval arithmetic: every root within 3.5 (10 times the size of the scene) is among these,"
     " but roots closer than 1e-09 of the range are not told apart near 0.1, 0.2",

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from math import prod
 
-from eomgen.algebra.graph import Node, below
+from eomgen.algebra.graph import Node, below, term
 from eomgen.algebra.ldl import Pivots
 from eomgen.program import (
     Apply,
@@ -29,11 +29,16 @@ class _Draft:
     """A function being written: the expression and size of each node that has been placed."""
 
     shared: frozenset[Node]  # these get a name
-    partners: dict[Node, Node]  # sin(a) <-> cos(a)
+    partners: Mapping[Node, Node]  # sin(a) <-> cos(a)
+    given: Mapping[Node, Expression]  # these are read, not computed
     expressions: dict[Node, Expression] = field(default_factory=dict)
     sizes: dict[Node, int] = field(default_factory=dict)
     statements: list[Statement] = field(default_factory=list)
     names: int = 0
+
+    def knows(self, node: Node) -> bool:
+        """Whether a node need not be computed any more."""
+        return node in self.expressions or node in self.given
 
     def new_name(self) -> str:
         """The next name: v0, v1, ..."""
@@ -52,29 +57,47 @@ def assemble(
     if prod(shape) != len(results):
         raise ValueError(f"{name} has {len(results)} results, its shape is {shape}")
     reached = set(below(results))
-    checks = {pivot: scale for pivot, scale in pivots if pivot in reached}
-    nodes = below([*results, *checks.values()])
-    draft = _draft(nodes, [*results, *checks.values()], checks)
+    checks = tuple(pair for pair in pivots if _divisor(pair[0]) in reached)
+    return written(Function(name, about, shape, (), ()), results, checks, {})
+
+
+def _divisor(pivot: Node) -> Node:
+    """What is left of a pivot as a denominator: signs and numbers are taken out of it."""
+    return term(pivot.operands[0] if pivot.operator == "negate" else pivot)[1]
+
+
+def written(
+    head: Function, results: Sequence[Node], pivots: Pivots, given: Mapping[Node, Expression]
+) -> Function:
+    """`head` with statements that check all `pivots` and compute `results`.
+
+    Nodes of `given` are not computed but read as it says.
+    """
+    checks = dict(pivots)
+    wanted = [*results, *checks.values()]
+    nodes = below([*wanted, *checks], given.__contains__)
+    partners = _partners(nodes)
+    named = {*partners, *checks, *_used_twice(nodes, wanted)} - (given.keys() - checks.keys())
+    draft = _Draft(frozenset(named), partners, given)
+    # depth first, 2 to 15 % less values would be alive at a time, and the machine code no better
     for node in nodes:
         if node in checks:
-            _place_all(draft, below([checks[node]], stop=draft.expressions.__contains__))
+            _place_all(draft, below([checks[node]], stop=draft.knows))
         _place_all(draft, [node])
         if node in checks:
             _require_positive(draft, node, checks[node])
     outputs = tuple(draft.expressions[node] for node in results)
-    return Function(name, about, shape, tuple(draft.statements), outputs)
+    return replace(head, statements=tuple(draft.statements), results=outputs)
 
 
-def _draft(nodes: list[Node], used: list[Node], checks: dict[Node, Node]) -> _Draft:
-    """An empty draft that knows which nodes to name."""
+def _used_twice(nodes: Iterable[Node], wanted: Iterable[Node]) -> list[Node]:
+    """The computed nodes that are read more than once; a pivot's own check does not count."""
     uses = Counter(a for node in nodes for a in node.operands)
-    uses.update(used)
-    partners = _partners(nodes)
-    shared = [a for a in nodes if a.operands and uses[a] > 1]
-    return _Draft(frozenset([*shared, *checks, *partners]), partners)
+    uses.update(wanted)
+    return [a for a in uses if a.operands and uses[a] > 1]
 
 
-def _partners(nodes: list[Node]) -> dict[Node, Node]:
+def _partners(nodes: Iterable[Node]) -> dict[Node, Node]:
     """Both ways between the sine and the cosine of the same angle."""
     sines = {a.operands[0]: a for a in nodes if a.operator == "sin"}
     pairs = [(sines.get(a.operands[0]), a) for a in nodes if a.operator == "cos"]
@@ -82,7 +105,7 @@ def _partners(nodes: list[Node]) -> dict[Node, Node]:
     return dict(both) | {cosine: sine for sine, cosine in both}
 
 
-def _place_all(draft: _Draft, nodes: list[Node]) -> None:
+def _place_all(draft: _Draft, nodes: Iterable[Node]) -> None:
     """Place nodes that are not placed yet; a sine brings its cosine along."""
     for node in nodes:
         if node not in draft.expressions:
@@ -103,6 +126,8 @@ def _place(draft: _Draft, node: Node) -> None:
 
 def _expression(draft: _Draft, node: Node) -> tuple[Expression, int]:
     """The node in terms of its operands, and how many operators stand on the line."""
+    if node in draft.given:
+        return draft.given[node], 0
     match node.operator:
         case "number":
             return Number(node.datum), 0

@@ -143,13 +143,24 @@ def add(a: Node, b: Node) -> Node:
         return subtract(a, b.operands[0])
     if a.operator == "negate":
         return subtract(b, a.operands[0])
-    if a is b or a.operator == "multiply" or b.operator == "multiply":
-        (c, x), (d, y) = term(a), term(b)
-        if x is y:
-            return _scale(c + d, x)
-        if c == d and (square := _pythagoras(x, y)) is not None:
-            return _scale(c, square)
+    if (total := _total(a, b)) is not None:
+        return total
     return binary("add", a, b) if a.id < b.id else binary("add", b, a)
+
+
+def _total(a: Node, b: Node) -> Node | None:
+    """A sum that is simpler than its operands; None elsewhere."""
+    for one, other in ((a, b), (b, a)):
+        # a + (b - a) = b
+        if one.operator == "subtract" and one.operands[1] is other:
+            return one.operands[0]
+    if a is not b and a.operator != "multiply" and b.operator != "multiply":
+        return None
+    (c, x), (d, y) = term(a), term(b)
+    if x is y:
+        return _scale(c + d, x)
+    square = _pythagoras(x, y) if c == d else None
+    return None if square is None else _scale(c, square)
 
 
 def _pythagoras(a: Node, b: Node) -> Node | None:
@@ -191,11 +202,26 @@ def subtract(a: Node, b: Node) -> Node:
         return _shift(negate(b), a.datum)
     if a.operator == "negate":
         return negate(add(a.operands[0], b))
+    if (rest := _difference(a, b)) is not None:
+        return rest
     if a.operator == "multiply" or b.operator == "multiply":
         (c, x), (d, y) = term(a), term(b)
         if x is y:
             return _scale(c - d, x)
     return binary("subtract", a, b)
+
+
+def _difference(a: Node, b: Node) -> Node | None:
+    """(a + b) - b = a and its like: what is left where one operand holds the other."""
+    if a.operator == "add" and b in a.operands:
+        return a.operands[a.operands[0] is b]
+    if b.operator == "add" and a in b.operands:
+        return negate(b.operands[b.operands[0] is a])
+    if a.operator == "subtract" and a.operands[0] is b:
+        return negate(a.operands[1])
+    if b.operator == "subtract" and b.operands[0] is a:
+        return b.operands[1]
+    return None
 
 
 def term(a: Node) -> tuple[Exact, Node]:

@@ -24,7 +24,8 @@ from eomgen.analysis.equilibrium_records import Equilibria, Equilibrium, Stabili
 from eomgen.analysis.equilibrium_scene import scene
 from eomgen.analysis.equilibrium_search import typical_slope
 from eomgen.analysis.equilibrium_stability import null_space, stability
-from eomgen.model import Constraint, Model
+from eomgen.mechanics import constraints, lagrange, named_reactions
+from eomgen.model import AXES, SPACES, Constraint, Model
 
 __all__ = ["Equilibria", "Equilibrium", "Statics", "equations", "solve"]
 
@@ -104,8 +105,10 @@ class _Part:
         return _Part(closed, touching, problem, find(problem), _has_potential(closed, forces))
 
     def said(self) -> str:
-        """How it was searched."""
-        return f"touching {', '.join(self.touching)}: " * bool(self.touching) + self.found.method
+        """How it was searched, and how many of what it found contacts do not admit."""
+        said = f"touching {', '.join(self.touching)}: " * bool(self.touching) + self.found.method
+        refused = sum(not self._admitted(r) for r in self.found.roots)
+        return said + f", but for {refused} that the unilateral constraints refuse" * bool(refused)
 
     def equilibria(self) -> list[Equilibrium]:
         """Those that the unilateral constraints admit."""
@@ -137,12 +140,33 @@ class _Part:
         return Equilibrium(
             coordinates={n: decimal(v, s) for n, v, s in triples},
             multipliers=multipliers,
-            reactions=_reactions(self.model, multipliers),
+            reactions=self._reactions(root, multipliers),
             stability=self._stability(root, multipliers),
             isolated=self.found.isolated or (root.regular and not self.found.arbitrary),
             contacts=self.touching,
             unique_loads=rank == len(root.multipliers),
         )
+
+    def _reactions(
+        self, root: Root, multipliers: Mapping[str, Decimal]
+    ) -> dict[str, tuple[Decimal, ...]]:
+        """Forces in world axes: lambda of two points that coincide, J' lambda on a body."""
+        model = self.model
+        found = {}
+        for c in model.constraints:
+            own = [v for n, v in multipliers.items() if n == c.name or n.startswith(f"{c.name}.")]
+            if c.points is not None:
+                found[c.reaction or c.name] = tuple(own)
+        numbers = dict(zip(self.problem.scene.names, root.numbers.jacobian, strict=True))
+        order = [c.name for c in model.coordinates]
+        for name, (rows, axes) in _held_bodies(model).items():
+            force = dict.fromkeys(AXES[: SPACES[model.space]], Decimal(0))
+            for coordinate, axis in axes.items():
+                j = order.index(coordinate)
+                shares = (decimal(numbers[r][j]) * multipliers[r] for r in rows)
+                force[axis] = sum(shares, Decimal(0))
+            found[name] = tuple(force.values())
+        return found
 
     def _stability(self, root: Root, multipliers: Mapping[str, Decimal]) -> Stability:
         typical = typical_slope(self.problem.scene, self.problem.box)
@@ -176,15 +200,19 @@ def _has_potential(model: Model, forces: Sequence[Form]) -> bool:
     return all(normal.is_zero(slope(i, j) - slope(j, i)) for i, j in pairs)
 
 
-def _reactions(model: Model, multipliers: Mapping[str, Decimal]) -> dict[str, tuple[Decimal, ...]]:
-    """The force on the first of two points that coincide: phi = first - second, so it is lambda."""
+def _held_bodies(model: Model) -> dict[str, tuple[tuple[str, ...], Mapping[str, str]]]:
+    """Named reactions of relations on one body: (rows, coordinate -> axis of the world)."""
+    named = [c for c in model.constraints if c.reaction and c.points is None]
+    if not named:
+        return {}
+    kinematics = lagrange.closed_kinematics(model)
+    rows = [r for r in constraints.rows(kinematics) if r.constraint in named]
     found = {}
-    for c in model.constraints:
-        if c.points is not None:
-            shares = [
-                v for n, v in multipliers.items() if n == c.name or n.startswith(f"{c.name}.")
-            ]
-            found[c.reaction or c.name] = tuple(shares)
+    for c in named:
+        own = [r for r in rows if r.constraint is c]
+        body = named_reactions.body_of(kinematics, own) if own else None
+        if body is not None and c.reaction is not None:
+            found[c.reaction] = (tuple(r.name for r in own), body[1])
     return found
 
 

@@ -109,7 +109,8 @@ class Equilibrium:
 
     coordinates: Mapping[str, Decimal]
     multipliers: Mapping[str, Decimal]  # by the name of the row
-    reactions: Mapping[str, tuple[Decimal, ...]]  # force on the first point, in world axes [N]
+    reactions: Mapping[str, tuple[Decimal, ...]]  # force [N] in world axes: on the first of two
+    # points, or where a relation is named on the one body whose Cartesian coordinates it holds
     stability: Stability
     isolated: bool = True
     contacts: tuple[str, ...] = ()  # unilateral constraints that touch

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 import sympy as sp
 
+from eomgen.algebra.arithmetic import FLOAT, mpmath_arithmetic
 from eomgen.algebra.graph import Node
 from eomgen.algebra.scalar import Algebra
-from eomgen.checks.evaluation import Bench, benches, finite, over
+from eomgen.checks.agreement import DECIDING_STATES, DIGITS
+from eomgen.checks.evaluation import IRREGULAR, Bench, benches, finite, over, singly
 from eomgen.checks.power import imbalance, motion_of
 from eomgen.checks.samples import Samples
 from eomgen.compile import Machine
@@ -190,5 +193,23 @@ def _shown(position: Mapping[str, sp.Expr]) -> str:
 
 
 def worst(machine: Machine, samples: Samples, terms: Sequence[Node]) -> float:
-    """The largest |sum of the terms| / sum of |terms| over the samples."""
-    return max(over(benches(machine, samples), lambda at, _: imbalance(terms, at)))
+    """The largest |sum of the terms| / sum of |terms| over the samples, decided in 50 digits.
+
+    A single term that vanishes is round-off in doubles: it is all of its own size.
+    """
+    error = max(over(benches(machine, samples), lambda at, _: imbalance(terms, at)))
+    return error if error <= TOLERANCE else _decided(machine, samples, terms)
+
+
+def _decided(machine: Machine, samples: Samples, terms: Sequence[Node]) -> float:
+    """The sum in 50 digits over the sizes of the terms in doubles."""
+    exact = mpmath_arithmetic(DIGITS)
+    precise = singly(machine, samples.exact or samples, exact, DECIDING_STATES)
+    plain = singly(machine, samples, FLOAT, DECIDING_STATES)
+    found = []
+    for (fine, _), (rough, _) in zip(precise, plain, strict=True):
+        with suppress(*IRREGULAR):
+            left = float(abs(sum(fine.nodes(terms))))
+            size = sum(abs(float(v)) for v in rough.nodes(terms))
+            found.append(left / (size or 1.0))
+    return max(found, default=1.0)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from eomgen.algebra.arithmetic import FLOAT
@@ -53,23 +54,30 @@ def _forms(row: ConstraintRow) -> list[Any]:
 
 def samples_of(scene: Linked, states: Sequence[Admissible], drawn: Samples) -> Samples:
     """Admissible states as samples, with the inputs and accelerations of random ones."""
+    exact = _columns(scene, states, drawn, lambda value: value)
+    return replace(_columns(scene, states, drawn, float), exact=exact)
+
+
+def _columns(
+    scene: Linked, states: Sequence[Admissible], drawn: Samples, number: Callable[[Any], Any]
+) -> Samples:
     count, size = len(states), len(scene.model.coordinates)
     found = [s.state for s in states]
-    moving = [[float(v) for v in _speeds(scene, s.state)] for s in states]
+    moving = [[number(v) for v in speeds_of(scene, s.state)] for s in states]
     return Samples(
         count=count,
-        time=[float(s.time) for s in found],
+        time=[number(s.time) for s in found],
         state=[
-            *([float(s.coordinates[j]) for s in found] for j in range(size)),
+            *([number(s.coordinates[j]) for s in found] for j in range(size)),
             *([row[j] for row in moving] for j in range(len(drawn.accelerations))),
         ],
         inputs=[column[:count] for column in drawn.inputs],
-        parameters=[[float(s.parameters[k]) for s in found] for k in range(len(drawn.parameters))],
+        parameters=[[number(s.parameters[k]) for s in found] for k in range(len(drawn.parameters))],
         accelerations=[column[:count] for column in drawn.accelerations],
     )
 
 
-def _speeds(scene: Linked, state: State) -> Sequence[Any]:
+def speeds_of(scene: Linked, state: State) -> Sequence[Any]:
     """The speeds of a state whose rates are known."""
     algebra = scene.links.kinematics.algebra
     nodes = [algebra.of(s.formula) for s in scene.model.speeds]

@@ -25,6 +25,7 @@ class Samples:
     inputs: list[list[float]]
     parameters: list[list[float]]
     accelerations: list[list[float]]  # of the speeds
+    exact: Samples | None = None  # the same in 50 digits, where floats are off the constraints
 
     def arguments(self) -> dict[str, list[list[float]]]:
         """The components by the names that `program.Read` uses."""

@@ -119,6 +119,22 @@ def virtual_name(coordinate: str) -> str:
     return f"delta {coordinate}"
 
 
+JUMP = "jump "  # what the names of changes of rates begin with
+
+
+def jump_name(coordinate: str) -> str:
+    """The name of the symbol of the change of a coordinate's rate in an impact."""
+    return f"{JUMP}{coordinate}"
+
+
 def multiplier_name(row: str) -> str:
     """The name of the symbol of a row's Lagrange multiplier."""
     return f"lambda {row}"
+
+
+REACTION = "reaction "  # what the names of these symbols begin with
+
+
+def reaction_name(letter: str, body: str) -> str:
+    """The name of the symbol of a force or moment that holds a body."""
+    return f"{REACTION}{letter} {body}"

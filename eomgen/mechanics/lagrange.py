@@ -137,6 +137,22 @@ class Lagrangian:
         terms = (efforts.generalized_force(self.kinematics, e, motion.rate) for e in self.efforts)
         return normal.total(self.kinematics.algebra.number(0).ring, terms)
 
+    @cached_property
+    def moving(self) -> tuple[Motion[Form], ...]:
+        """What is varied."""
+        return motions.of(self.kinematics.model, self.kinematics.algebra)
+
+    @cached_property
+    def rows(self) -> tuple[LagrangeRow, ...]:
+        """The partial derivatives of each motion."""
+        return tuple(_row(self, m) for m in self.moving)
+
+    @cached_property
+    def equations(self) -> tuple[Equation, ...]:
+        """The equation of each motion."""
+        pairs = zip(self.moving, self.rows, strict=True)
+        return tuple(_equation(self, m, row) for m, row in pairs)
+
 
 def derive(model: Model) -> Derivation:
     """The whole derivation of a model in closed form.
@@ -145,11 +161,7 @@ def derive(model: Model) -> Derivation:
         UsageError: declared speeds are not independent.
     """
     lagrangian = Lagrangian(closed_kinematics(model))
-    moving = motions.of(model, lagrangian.kinematics.algebra)
-    rows = tuple(_row(lagrangian, m) for m in moving)
-    pairs = zip(moving, rows, strict=True)
-    in_rates = tuple(_equation(lagrangian, m, row) for m, row in pairs)
-    rates, equations = quasi_velocities.project(lagrangian.kinematics, in_rates)
+    rates, equations = quasi_velocities.project(lagrangian.kinematics, lagrangian.equations)
     links = closed_rows(lagrangian.kinematics)
     links = quasi_velocities.rows(lagrangian.kinematics, rates, links)
     equations = with_reactions(lagrangian.kinematics, equations, links)
@@ -160,11 +172,11 @@ def derive(model: Model) -> Derivation:
         kinetic=lagrangian.kinetic,
         potential=lagrangian.potential,
         dissipation=lagrangian.dissipation,
-        virtual_work=_virtual_work(lagrangian, moving),
+        virtual_work=_virtual_work(lagrangian),
         kinetic_energy=lagrangian.kinetic_energy,
         potential_energy=lagrangian.potential_energy,
         dissipation_function=lagrangian.dissipation_function,
-        rows=rows,
+        rows=lagrangian.rows,
         equations=equations,
         matrix=matrix_form(lagrangian.kinematics, equations),
         constraints=links,
@@ -288,9 +300,7 @@ def _spins(kinematics: Kinematics[Form]) -> tuple[Spin, ...]:
     return tuple(Spin(name, spin.angular_velocity) for name, spin in found if spin is not None)
 
 
-def _virtual_work(
-    lagrangian: Lagrangian, moving: tuple[Motion[Form], ...]
-) -> tuple[Contribution[Form], ...]:
+def _virtual_work(lagrangian: Lagrangian) -> tuple[Contribution[Form], ...]:
     """Force . delta r of every nonconservative effort."""
     algebra = lagrangian.kinematics.algebra
     shares = []
@@ -298,7 +308,7 @@ def _virtual_work(
         terms = (
             efforts.generalized_force(lagrangian.kinematics, effort, m.rate)
             * algebra.of(m.virtual_symbol)
-            for m in moving
+            for m in lagrangian.moving
         )
         work = normal.total(algebra.number(0).ring, terms)
         shares.append(Contribution(effort.name, effort.kind, work))

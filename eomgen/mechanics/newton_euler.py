@@ -12,12 +12,14 @@ F_joint = sum R,   M_joint = sum (L + (r - p) x R)   about the point p of the jo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Generic
 
 import sympy as sp
 
 from eomgen.algebra.graph import Node
+from eomgen.algebra.scalar import S
 from eomgen.mechanics import (
     newton_euler_inside,
     newton_euler_loads,
@@ -33,11 +35,11 @@ from eomgen.model import Body
 
 
 @dataclass(frozen=True)
-class Wrench:
+class Wrench(Generic[S]):
     """A force [N] and a moment [N m] on a body, in world axes; no moment on a line."""
 
-    force: Vector[Node]
-    moment: Vector[Node]  # one component in a plane
+    force: Vector[S]
+    moment: Vector[S]  # one component in a plane
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,7 @@ class JointReaction:
     # to this one is not in the tree, and acts in the resultants of both
 
 
-def resultants(scene: Scene) -> dict[str, Wrench]:
+def resultants(scene: Scene) -> dict[str, Wrench[Node]]:
     """R and L, about the mass centre, of every body; what cannot be attributed is in them."""
     kinematics = scene.kinematics
     found = {b.name: _inertia(scene, b) for b in kinematics.model.bodies}
@@ -77,11 +79,11 @@ def resultants(scene: Scene) -> dict[str, Wrench]:
     return found
 
 
-def _less(total: Wrench, applied: Wrench) -> Wrench:
+def _less(total: Wrench[Node], applied: Wrench[Node]) -> Wrench[Node]:
     return Wrench(subtract(total.force, applied.force), subtract(total.moment, applied.moment))
 
 
-def _inertia(scene: Scene, body: Body) -> Wrench:
+def _inertia(scene: Scene, body: Body) -> Wrench[Node]:
     """M (a - g) and d(I w)/dt."""
     kinematics = scene.kinematics
     acceleration = _rate(scene, kinematics.velocity(body.name))
@@ -113,17 +115,23 @@ def _spin_rate(scene: Scene, body: Body) -> Vector[Node]:
     return kinematics.to_world(moment, body.name)
 
 
-def lever(arm: Vector[Node], force: Vector[Node]) -> Vector[Node]:
+def lever(arm: Vector[S], force: Vector[S]) -> Vector[S]:
     """The moment arm x force: none on a line, one component in a plane."""
     if len(arm) == 3:
         return cross(arm, force)
     return (arm[0] * force[1] - arm[1] * force[0],) if len(arm) == 2 else ()
 
 
-def joint_wrenches(scene: Scene, tree: Sequence[Joint]) -> dict[str, Wrench]:
+def joint_wrenches(scene: Scene, tree: Sequence[Joint]) -> dict[str, Wrench[Node]]:
     """The sums over all that hangs on each joint, about the joint's point, by the body's name."""
-    kinematics = scene.kinematics
-    found = resultants(scene)
+    return carried(scene.kinematics, resultants(scene), tree)
+
+
+def carried(
+    kinematics: Kinematics[S], single: Mapping[str, Wrench[S]], tree: Sequence[Joint]
+) -> dict[str, Wrench[S]]:
+    """What each joint holds: `single` is about the mass centre of each body alone."""
+    found = dict(single)
     places = {j.body: about(kinematics, j) for j in tree}
     for name, wrench in found.items():
         arm = subtract(kinematics.position(name), places[name])
@@ -137,7 +145,7 @@ def joint_wrenches(scene: Scene, tree: Sequence[Joint]) -> dict[str, Wrench]:
     return found
 
 
-def about(kinematics: Kinematics[Node], joint: Joint) -> Vector[Node]:
+def about(kinematics: Kinematics[S], joint: Joint) -> Vector[S]:
     """The place of the point that a joint's moment is about."""
     if joint.point is None:
         return kinematics.origin(joint.body)

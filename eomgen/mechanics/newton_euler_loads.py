@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Generic, Protocol
 
 import sympy as sp
 
 from eomgen.algebra import ldl
 from eomgen.algebra.graph import Node
+from eomgen.algebra.scalar import S
 from eomgen.mechanics import efforts, multipliers, newton_euler_inside, newton_euler_tree
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.efforts import Effort
@@ -46,21 +47,21 @@ class Scene(Protocol):
 
 
 @dataclass(frozen=True)
-class Push:
+class Push(Generic[S]):
     """A force on a point, in world axes [N]."""
 
     name: str
     point: str
-    force: Vector[Node]
+    force: Vector[S]
 
 
 @dataclass(frozen=True)
-class Twist:
+class Twist(Generic[S]):
     """A moment on a body, in world axes [N m]."""
 
     name: str
     body: str
-    moment: Vector[Node]
+    moment: Vector[S]
 
 
 @dataclass(frozen=True)
@@ -74,53 +75,51 @@ class Unplaced:
     along: bool = False  # it acts along coordinates, not on a point
 
 
-def pushes(scene: Scene) -> list[Push]:
+def pushes(scene: Scene) -> list[Push[Node]]:
     """Applied forces, and the multipliers of every constraint that joins two points."""
-    return [*_applied(scene.kinematics), *_joins(scene)]
+    return [*applied(scene.kinematics), *_joins(scene)]
 
 
-def _joins(scene: Scene) -> list[Push]:
+def _joins(scene: Scene) -> list[Push[Node]]:
     """Lambda on the first point, minus lambda on the second."""
     zero = scene.kinematics.algebra.number(0)
     names = [row.name for row in scene.rows if row.name in scene.kept]
     values = dict(zip(names, scene.linked.multipliers, strict=True)) if names else {}
-    found = []
+    found: list[Push[Node]] = []
     for constraint in scene.kinematics.model.constraints:
         if constraint.points is not None:
             rows = [row.name for row in scene.rows if row.constraint is constraint]
             force = tuple(values.get(name, zero) for name in rows)
-            first, second = constraint.points
-            found.append(Push(constraint.name, first, force))
-            found.append(Push(constraint.name, second, tuple(-f for f in force)))
+            found += both(constraint.name, *constraint.points, force)
     return found
 
 
-def _applied(kinematics: Kinematics[Node]) -> Iterator[Push]:
+def applied(kinematics: Kinematics[S]) -> Iterator[Push[S]]:
     """Springs, dampers and forces on points; weights are `weight`."""
     for element, effort in _elements(kinematics):
         if element.between is not None:
             first, second = element.between
             pull = _pull(kinematics, element, effort)
-            yield from _both(element.name, second, first, pull)
+            yield from both(element.name, second, first, pull)
     for force in kinematics.model.forces:
         vector = kinematics.to_world(kinematics.vector(force.components), force.axes)
-        yield from _both(force.name, force.on, force.source, vector)
+        yield from both(force.name, force.on, force.source, vector)
 
 
-def _both(name: str, on: str, source: str | None, force: Vector[Node]) -> Iterator[Push]:
+def both(name: str, on: str, source: str | None, force: Vector[S]) -> Iterator[Push[S]]:
     """A force and, where something takes it, its reaction."""
     yield Push(name, on, force)
     if source is not None:
         yield Push(name, source, tuple(-f for f in force))
 
 
-def _elements(kinematics: Kinematics[Node]) -> Iterator[tuple[Element, Effort[Node]]]:
+def _elements(kinematics: Kinematics[S]) -> Iterator[tuple[Element, Effort[S]]]:
     """Every spring and damper with its effort."""
     model = kinematics.model
     conservative = list(efforts.conservative(kinematics))
     dissipative = list(efforts.dissipative(kinematics))
     others = list(efforts.nonconservative(kinematics))
-    groups: tuple[tuple[Sequence[Element], list[Effort[Node]], str], ...] = (
+    groups: tuple[tuple[Sequence[Element], list[Effort[S]], str], ...] = (
         ([s for s in model.springs if has_potential(s)], conservative, "spring"),
         ([s for s in model.springs if not has_potential(s)], others, "spring"),
         ([d for d in model.dampers if d.damping is not None], dissipative, "damper"),
@@ -130,7 +129,7 @@ def _elements(kinematics: Kinematics[Node]) -> Iterator[tuple[Element, Effort[No
         yield from zip(elements, (e for e in found if e.kind == kind), strict=True)
 
 
-def _pull(kinematics: Kinematics[Node], element: Element, effort: Effort[Node]) -> Vector[Node]:
+def _pull(kinematics: Kinematics[S], element: Element, effort: Effort[S]) -> Vector[S]:
     """The force on the second end; a scalar effort works along the element."""
     if len(effort.force) == kinematics.dimensions:
         return effort.force
@@ -138,7 +137,7 @@ def _pull(kinematics: Kinematics[Node], element: Element, effort: Effort[Node]) 
     return scale(tension, span(kinematics, element))
 
 
-def twists(kinematics: Kinematics[Node]) -> Iterator[Twist]:
+def twists(kinematics: Kinematics[S]) -> Iterator[Twist[S]]:
     """Moments, with their reactions."""
     for moment in kinematics.model.moments:
         vector = kinematics.to_world(
@@ -149,7 +148,7 @@ def twists(kinematics: Kinematics[Node]) -> Iterator[Twist]:
             yield Twist(moment.name, moment.source, tuple(-m for m in vector))
 
 
-def _axes(name: str | None, kinematics: Kinematics[Node]) -> str | None:
+def _axes(name: str | None, kinematics: Kinematics[S]) -> str | None:
     """In a plane a moment is one number, whatever the axes."""
     return name if kinematics.dimensions == 3 else None
 
@@ -169,7 +168,7 @@ def inside(kinematics: Kinematics[Node]) -> Iterator[tuple[Inside, Node]]:
             yield found, force
 
 
-def weight(kinematics: Kinematics[Node], mass: sp.Expr) -> Vector[Node]:
+def weight(kinematics: Kinematics[S], mass: sp.Expr) -> Vector[S]:
     """M g."""
     gravity = kinematics.vector(kinematics.model.gravity)
     return scale(kinematics.algebra.of(mass), gravity)

@@ -53,6 +53,35 @@ class Compiled:
             raise CheckError(f"{function}: the mass matrix is singular at this state")
         return result
 
+    def model(self, parameters: Sequence[float]) -> Any:
+        """A prepared model: the memory of the struct that the functions `prepared_` read."""
+        kind = REALS[self.real]
+        prepared = self.program.prepare
+        constants = len(prepared.results) if prepared else 0
+        # a program without parameters has an int in their place
+        memory = (kind * (len(parameters) + constants + 1))()
+        given = _vector(parameters, len(self.program.parameters), kind)
+        self.library[f"{prefix(self.program.name)}_prepare"](_pointer(given, kind), memory)
+        return memory
+
+    def batch(
+        self, function: str, t: float, *columns: np.ndarray[Any, np.dtype[Any]], model: Any
+    ) -> tuple[np.ndarray[Any, np.dtype[Any]], int]:
+        """The results at many states, a column each, and the worst status.
+
+        columns: states, accelerations where they are taken, and inputs, (n, N); results
+        (size, N), NaN in the column of a state that fails. The code was written for a batch.
+        """
+        kind = REALS[self.real]
+        given = [np.ascontiguousarray(c, kind) for c in columns]
+        count = given[0].shape[1]
+        result = np.zeros((int(np.prod(self.program.function(function).shape)), count), kind)
+        symbol = self.library[f"{prefix(self.program.name)}_batch_{function}"]
+        symbol.argtypes = [ctypes.c_size_t, kind, *[ctypes.c_void_p] * (len(given) + 2)]
+        arrays = [_pointer(a, kind) for a in given]
+        status = symbol(count, kind(t), *arrays, model, _pointer(result, kind))
+        return result, status
+
 
 def _sizes(program: Program, function: Function) -> list[int]:
     """The lengths of what a function takes behind the time."""

@@ -12,6 +12,7 @@ from eomgen.integrators.methods import Method
 from eomgen.integrators.steps import Steps
 from eomgen.numerics import compiled
 from eomgen.numerics.records import Arguments, Array, Function, Grid, Rows, Stopped
+from eomgen.render.code_context import coded
 from eomgen.render.names import prefix
 from eomgen.render.targets import TARGETS, render
 from eomgen.render.templating import environment
@@ -30,7 +31,7 @@ class EngineC:
         """
         templates = environment()
         files = {
-            **render(steps.program, TARGETS["c"], templates),
+            **render(coded(steps.program), TARGETS["c"], templates),
             **render(steps, TARGETS["c-steps"], templates),
             **render(steps, TARGETS["c-driver"], templates),
         }

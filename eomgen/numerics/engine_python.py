@@ -19,6 +19,7 @@ from eomgen.numerics.records import (
     Rows,
     Stopped,
 )
+from eomgen.render.code_context import coded
 from eomgen.render.names import module
 from eomgen.render.targets import TARGETS, render
 from eomgen.render.templating import environment
@@ -30,11 +31,12 @@ class EnginePython:
     real = "double"
 
     def __init__(self, steps: Steps, given: Arguments) -> None:
-        (text,) = render(steps.program, TARGETS["python"], environment()).values()
+        (text,) = render(coded(steps.program), TARGETS["python"], environment()).values()
         self.module = load_python(text, module(steps.name))
         self.steps, self.inputs = steps, given.inputs
         names = [p.name for p in steps.program.parameters]
-        self.parameters = dict(zip(names, given.parameters, strict=True))
+        parameters = dict(zip(names, given.parameters, strict=True))
+        self.model = self.module.prepare(parameters)
 
     def function(self, name: str) -> Function:
         """A function of the program; it raises `Stopped` where the mass matrix is singular."""
@@ -43,7 +45,7 @@ class EnginePython:
         def call(t: float, state: Array) -> Array:
             try:
                 with np.errstate(all="ignore"):
-                    found: Array = function(t, state, self.inputs, self.parameters)
+                    found: Array = function(t, state, self.inputs, self.model)
             except np.linalg.LinAlgError as error:
                 raise Stopped(SINGULAR) from error
             return found

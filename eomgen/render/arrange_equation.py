@@ -10,7 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from eomgen.mechanics.equations import Equation, multiplier_name
+from eomgen.algebra.normal import Form
+from eomgen.mechanics.equations import REACTION, Equation, multiplier_name
 from eomgen.render import tree
 from eomgen.render.arrange import LOADS, Arranger, degree, sections
 from eomgen.render.arrange_order import Kind
@@ -42,7 +43,7 @@ Parts = Mapping[str, Sequence[Term]]  # the terms by origin, as in `Equation`
 
 LOADED = ("damping", "elastic", "gravity", "other")
 RIGHT = ("applied", "reaction")
-MULTIPLIER = multiplier_name("")
+UNKNOWN = (multiplier_name(""), REACTION)  # what the names of unknown forces begin with
 
 
 def equation(arranger: Arranger, row: Equation) -> Arranged:
@@ -68,6 +69,14 @@ def _right(factors: Factors, parts: Parts) -> Tree:
     return tree.total(tree.terms_of(applied) + _reaction(factors, parts["reaction"]))
 
 
+def forces(arranger: Arranger, applied: Form, reaction: Form) -> Tree:
+    """The forces on a body: unknown ones, then applied ones, positive ones first."""
+    factors = arranger.factors(applied.ring)
+    given = summed(factors, shortest(factors, flat(factors, applied), LOADS))
+    terms = (*_reaction(factors, flat(factors, reaction)), *tree.terms_of(given))
+    return tree.total(tuple(sorted(terms, key=lambda t: tree.split_sign(t)[0])))
+
+
 def _reaction(factors: Factors, terms: Sequence[Term]) -> tuple[Tree, ...]:
     """One term for each multiplier, which stands in front: -2 lambda (x_2 - x_1)."""
     own = sorted(terms, key=lambda t: factors.place((_multiplier(factors, t), 1)))
@@ -75,12 +84,12 @@ def _reaction(factors: Factors, terms: Sequence[Term]) -> tuple[Tree, ...]:
 
 
 def _multiplier(factors: Factors, term: Term) -> int:
-    """The factor that is a Lagrange multiplier."""
+    """The factor that is a Lagrange multiplier or a reaction."""
     return next(f for f, _ in term.motion if _is_multiplier(factors.trees[f]))
 
 
 def _is_multiplier(shown: Tree) -> bool:
-    return isinstance(shown, Symbol) and shown.name.startswith(MULTIPLIER)
+    return isinstance(shown, Symbol) and shown.name.startswith(UNKNOWN)
 
 
 def _share(factors: Factors, terms: Sequence[Term]) -> Tree:

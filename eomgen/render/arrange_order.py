@@ -9,7 +9,7 @@ from enum import IntEnum
 import sympy as sp
 
 from eomgen.mechanics import motions
-from eomgen.mechanics.equations import virtual_name
+from eomgen.mechanics.equations import jump_name, virtual_name
 from eomgen.model import TIME, Coordinate, Model, Prescribed
 
 
@@ -60,6 +60,8 @@ def of_model(model: Model) -> Order:
             ranks[symbol.name] = (kind, (place,), 0)
     for place, name in enumerate(motions.displacements(model)):
         ranks[virtual_name(name)] = (Kind.VIRTUAL, (place,), 0)
+    for place, coordinate in enumerate(model.coordinates):
+        ranks[jump_name(coordinate.name)] = (Kind.VIRTUAL, (place,), 0)
     own = {c.name: c.acceleration.name for c in model.coordinates}
     own |= {s.name: s.rate.name for s in model.speeds}
     return Order(ranks, frozenset(_nonzero(model)), own)

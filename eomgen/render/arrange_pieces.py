@@ -46,7 +46,10 @@ def negated(piece: Piece) -> Piece:
 
 def shown(factors: Factors, piece: Piece) -> Tree:
     """The piece as displayed."""
-    above, below = _sides(piece.parameters)
+    above, below = _sides(_with_tangents(factors, piece.parameters))
+    # x tan theta, not tan theta x
+    plain = tuple(p for p in above if not factors.is_function(p[0]))
+    constant = tuple(p for p in above if factors.is_function(p[0]))
     moving, divisors = _sides(_with_tangents(factors, piece.motion))
     early = tuple(p for p in moving if factors.kind(p[0]) < Kind.ACCELERATION)
     rates = tuple(p for p in moving if factors.kind(p[0]) in (Kind.ACCELERATION, Kind.RATE))
@@ -54,7 +57,11 @@ def shown(factors: Factors, piece: Piece) -> Tree:
     symbols = factors.tree(early) + piece.inner + factors.tree(rates)
     return tree.product(
         piece.number,
-        piece.coefficient + factors.tree(above) + symbols + piece.last + factors.tree(late),
+        piece.coefficient
+        + factors.tree(plain)
+        + symbols
+        + piece.last
+        + factors.tree(constant + late),
         factors.tree(below) + factors.tree(divisors),
     )
 

@@ -67,6 +67,11 @@ class Factors:
         """What a factor is."""
         return self.ranks[factor][0]
 
+    def is_function(self, factor: int) -> bool:
+        """Whether a factor is a sine, a cosine or a tangent."""
+        shown = self.trees[factor]
+        return isinstance(shown, Function) and shown.name in ("sin", "cos", "tan")
+
     def tangent(self, sine: int) -> tuple[int, int] | None:
         """(cosine, tangent) of a sine's argument, if the factor is one whose cosine was met."""
         ripple = self.ripples.get(sine)

@@ -42,23 +42,28 @@ def expression(tree: Expression, dialect: Dialect, names: Names) -> str:
 
 def _printed(tree: Expression, dialect: Dialect, names: Names) -> tuple[str, int]:
     """The text and how tightly it binds."""
-    match tree:
-        case Number(value):
-            text = dialect.number.format(literal(abs(value)))
-            return (f"-{text}", UNARY) if value < 0 else (text, ATOM)
-        case Read() | Value():
-            return names[tree], ATOM
-        case Apply("pi", ()):
-            return dialect.number.format("3.141592653589793"), ATOM
-        case Apply("negate", (operand,)):
-            return "-" + _guarded(operand, UNARY, dialect, names), UNARY
-        case Apply(operator, (left, right)) if operator in INFIX:
-            sign, level = INFIX[operator]
-            first, binding = _printed(left, dialect, names)
-            first = first if binding >= level else f"({first})"
-            return f"{first} {sign} {_guarded(right, level, dialect, names)}", level
-    arguments = ", ".join(expression(e, dialect, names) for e in tree.operands)
-    return f"{dialect.calls[tree.operator]}({arguments})", ATOM
+    if not isinstance(tree, Apply):
+        return _atom(tree, dialect, names)
+    operator, operands = tree.operator, tree.operands
+    if operator in INFIX:
+        sign, level = INFIX[operator]
+        first, binding = _printed(operands[0], dialect, names)
+        first = first if binding >= level else f"({first})"
+        return f"{first} {sign} {_guarded(operands[1], level, dialect, names)}", level
+    if operator == "negate":
+        return "-" + _guarded(operands[0], UNARY, dialect, names), UNARY
+    if operator == "pi":
+        return dialect.number.format("3.141592653589793"), ATOM
+    arguments = ", ".join([expression(e, dialect, names) for e in operands])
+    return f"{dialect.calls[operator]}({arguments})", ATOM
+
+
+def _atom(tree: Number | Read | Value, dialect: Dialect, names: Names) -> tuple[str, int]:
+    """A number, argument or value, and how tightly it binds."""
+    if not isinstance(tree, Number):
+        return names[tree], ATOM
+    text = dialect.number.format(literal(abs(tree.value)))
+    return (f"-{text}", UNARY) if tree.value < 0 else (text, ATOM)
 
 
 def _guarded(operand: Expression, level: int, dialect: Dialect, names: Names) -> str:

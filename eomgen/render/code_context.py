@@ -1,16 +1,21 @@
 """What the templates of C and Python are given: text, numbers and records of these."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
 
-from eomgen.program import OPERATORS, Program, Solve, Variable
-from eomgen.render.code import number
-from eomgen.render.dialects import C_FUNCTIONS, PYTHON, C, Dialect
+from eomgen.algebra.specialise import specialised, with_values
+from eomgen.program import OPERATORS, Expression, Program, Read, Solve, Value, Variable
+from eomgen.render.code import Names, expression, number
+from eomgen.render.dialects import C_FUNCTIONS, PLAIN, PYTHON, C, Dialect
+from eomgen.render.lowered import atoms
 from eomgen.render.names import escaped, prefix
-from eomgen.render.routines import routine
+from eomgen.render.routines import Routine, routine
+
+WAVES = ("pair", "sine", "cosine")
+LONGEST_FORMULA = 60  # characters of a comment
 
 
 @dataclass(frozen=True)
@@ -33,11 +38,50 @@ def symbols(variables: tuple[Variable, ...], reserved: frozenset[str]) -> tuple[
     )
 
 
+@dataclass(frozen=True)
+class Style:
+    """How the code of a program is written; all but `fold` is about C."""
+
+    fold: bool = False  # parameters with a value are numbers in the code
+    fast_trig: bool = False  # an own sine and cosine instead of those of <math.h>
+    batch: bool = False  # every function also for many states at once
+    longest: int = C.longest  # statements of a function that is not cut into parts
+
+
+@dataclass(frozen=True)
+class Code:
+    """A program and how it is written, the subject of the targets C and Python."""
+
+    program: Program
+    style: Style = Style()
+
+    @property
+    def name(self) -> str:
+        """The stem of the files."""
+        return self.program.name
+
+
+def coded(program: Program, style: Style = Style()) -> Code:
+    """The program as it is shipped: what depends on parameters alone is folded or prepared.
+
+    Raises:
+        UsageError, SingularMassMatrix: with the folded values something is not defined.
+    """
+    folded = with_values(program) if style.fold else frozenset[str]()
+    return Code(specialised(program, folded), style)
+
+
+def _code(subject: Program | Code) -> Code:
+    return subject if isinstance(subject, Code) else Code(subject)
+
+
 def interface(program: Program, dialect: Dialect) -> dict[str, Any]:
     """What every code template is given: plain text and numbers only."""
     reserved = dialect.reserved_members
     functions = tuple(routine(f, program, dialect) for f in program.functions)
-    used = frozenset[str]().union(*(f.operators for f in functions))
+    prepare = None if program.prepare is None else routine(program.prepare, program, dialect)
+    everything = functions if prepare is None else (*functions, prepare)
+    used = frozenset[str]().union(*(f.operators for f in everything))
     statements = [s for f in program.functions for s in f.statements]
     return {
         "name": program.name,
@@ -50,8 +94,11 @@ def interface(program: Program, dialect: Dialect) -> dict[str, Any]:
         "speeds": symbols(program.speeds, reserved),
         "inputs": symbols(program.inputs, reserved),
         "parameters": symbols(program.parameters, reserved),
+        "folded": symbols(program.folded, frozenset()),
         "outputs": symbols(program.outputs, reserved),
         "functions": functions,
+        "prepare": prepare,
+        "constants": _constants(program),
         "operators": tuple(o for o in OPERATORS if o in used),
         "solve_sizes": tuple(sorted({s.size for s in statements if isinstance(s, Solve)})),
         "pivots": any(f.can_fail for f in functions),
@@ -59,14 +106,42 @@ def interface(program: Program, dialect: Dialect) -> dict[str, Any]:
     }
 
 
-def c(program: Program) -> dict[str, object]:
-    """The names of the C templates: `interface` and the functions of <math.h> that are called."""
-    context = interface(program, C)
-    used = {*context["operators"], *(["abs"] if context["pivots"] else [])}
+def _constants(program: Program) -> tuple[Symbol, ...]:
+    """What `prepare` computes, described by its formula where that is short."""
+    if program.prepare is None:
+        return ()
+    names: Names = {Read("parameters", i): p.name for i, p in enumerate(program.parameters)}
+    formulas = [_formula(e, names) for e in program.prepare.results]
+    return tuple(Symbol(f"c{i}", f"c{i}", "", text, None) for i, text in enumerate(formulas))
+
+
+def _formula(tree: Expression, names: Names) -> str:
+    """An expression over parameters as text; empty where it reads named values or is long."""
+    if any(isinstance(a, Value) for a in atoms(tree)):
+        return ""
+    text = expression(tree, PLAIN, names)
+    return text if len(text) <= LONGEST_FORMULA else ""
+
+
+def c(subject: Program | Code) -> dict[str, object]:
+    """The names of the C templates: `interface`, the style, what of <math.h> is called."""
+    code = _code(subject)
+    program = code.program
+    context = interface(program, replace(C, lanes=code.style.batch, longest=code.style.longest))
+    waves = _waves([*context["functions"], *filter(None, [context["prepare"]])])
+    lane_waves = _lane_waves(context["functions"])
+    own_waves = bool(lane_waves or (waves and code.style.fast_trig))
+    used = {*context["operators"], *(["abs"] if context["pivots"] or own_waves else [])}
+    used |= {"sin", "cos"} if waves and code.style.fast_trig else set()
     calls = [(C.calls[o], f, OPERATORS[o]) for o, f in C_FUNCTIONS.items() if o in used]
     unknown = tuple(v.name for v in program.parameters if v.value is None)
     open_codes = dict(zip(unknown, escaped(unknown, C.reserved), strict=True))
     return context | {
+        "fast_trig": code.style.fast_trig,
+        "batch": code.style.batch,
+        "waves": waves,
+        "lane_waves": lane_waves,
+        "own_waves": own_waves,
         "math": tuple(calls),
         "open_codes": tuple(open_codes.values()),  # arguments of the function that sets parameters
         "defaults": tuple(
@@ -75,6 +150,20 @@ def c(program: Program) -> dict[str, object]:
         ),
         "initial_state": _initial_state(program, _c_constant),
     }
+
+
+def _waves(functions: Iterable[Routine]) -> tuple[str, ...]:
+    """The kinds of steps that compute a sine or cosine at one state."""
+    found = {s.kind for f in functions for body in (f.body, *f.parts) for s in body.steps}
+    return tuple(kind for kind in WAVES if kind in found)
+
+
+def _lane_waves(functions: Iterable[Routine]) -> tuple[str, ...]:
+    """The same in batches."""
+    lanes = [each for f in functions for each in f.lanes]
+    first = {wave.kind for each in lanes for wave in each.waves}
+    found = first | {step.kind for each in lanes for step in each.body.steps}
+    return tuple(kind for kind in WAVES if kind in found)
 
 
 def _c_constant(value: sp.Expr) -> str:
@@ -90,10 +179,11 @@ def _initial_state(program: Program, text: Callable[[sp.Expr], str]) -> tuple[st
     return tuple(known) if len(known) == len(values) else None
 
 
-def python(program: Program) -> dict[str, object]:
+def python(subject: Program | Code) -> dict[str, object]:
     """The names of the Python templates."""
+    program = _code(subject).program
     context = interface(program, PYTHON)
-    locals_ = {a.code for f in context["functions"] for a in f.arguments}
+    locals_ = {a.code for f in context["functions"] for a in f.body.arguments}
     return context | {
         "initial_state": _initial_state(program, number),
         "ambiguous": not locals_.isdisjoint("lOI"),  # to a linter

@@ -3,6 +3,9 @@
 import keyword
 from collections.abc import Mapping
 from dataclasses import dataclass
+from sys import maxsize
+
+from eomgen.program import OPERATORS
 
 
 @dataclass(frozen=True)
@@ -13,6 +16,9 @@ class Dialect:
     calls: Mapping[str, str]  # operator -> name
     reserved: frozenset[str]  # names that a local variable cannot have
     reserved_members: frozenset[str]  # names that a parameter cannot have
+    pairs: bool = False  # sine and cosine of an angle in one statement
+    lanes: bool = False  # functions also for many states at once
+    longest: int = maxsize  # statements of a function that is not cut into parts
 
 
 def _words(text: str) -> frozenset[str]:
@@ -48,14 +54,23 @@ C_FUNCTIONS = {  # operator -> function of <math.h>; its macro is the name in ca
     "log": "log", "abs": "fabs", "min": "fmin", "max": "fmax", "power": "pow",
 }  # fmt: skip
 _C_CALLS = {operator: name.upper() for operator, name in C_FUNCTIONS.items()} | {"sign": "SIGN"}
+# statements of about four operations each: beyond, gcc -O2 takes more than linear time
+LONGEST = 1000
+_OWN = _words("""
+t state accelerations inputs p m work result waves lane bad REAL EPSILON PIVOT LANES NOT_ABOVE
+APART INLINED WAVE_RANGE SIGN_BIT bits bits_of real_of reduced sine_and_cosine sine cosine
+lane_waves lane_sine lane_cosine gather scatter pick
+""")
 C = Dialect(
     number="REAL({})",
     calls=_C_CALLS,
     reserved=_C_MEMBERS
-    | {"t", "state", "inputs", "p", "result", "REAL", "EPSILON", "PIVOT"}
+    | _OWN
     | {name + suffix for name in _MATH for suffix in ("", "f", "l")}
     | frozenset(_C_CALLS.values()),
     reserved_members=_C_MEMBERS,
+    pairs=True,
+    longest=LONGEST,
 )
 PYTHON = Dialect(
     number="{}",
@@ -65,6 +80,12 @@ PYTHON = Dialect(
         **{o: f"np.arc{o[1:]}" for o in ("asin", "acos", "atan", "atan2")},
         "min": "np.fmin", "max": "np.fmax",
     },
-    reserved=frozenset(keyword.kwlist) | {"np", "t", "state", "inputs", "parameters"},
+    reserved=frozenset(keyword.kwlist) | {"np", "t", "state", "inputs", "parameters", "model"},
     reserved_members=frozenset(),  # keys of a dictionary
 )  # fmt: skip
+PLAIN = Dialect(  # for comments
+    number="{}",
+    calls={name: name for name in OPERATORS},
+    reserved=frozenset(),
+    reserved_members=frozenset(),
+)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from fractions import Fraction
 
-from eomgen.mechanics.equations import virtual_name
+from eomgen.mechanics.equations import JUMP, virtual_name
 from eomgen.render.latex_names import spelled
 from eomgen.render.latex_width import width
 from eomgen.render.tree import Function, Number, Power, Product, Sum, Symbol, Tree, split_sign
@@ -116,7 +116,7 @@ def _side_by_side(coefficient: Fraction, factors: tuple[Tree, ...], names: Names
 
 def _stands_off(factor: Tree, before: tuple[Tree, ...]) -> bool:
     """Whether a thin space keeps the factor apart: delta s, what follows a cosine."""
-    if isinstance(factor, Symbol) and factor.name.startswith(VIRTUAL):
+    if isinstance(factor, Symbol) and factor.name.startswith((VIRTUAL, JUMP)):
         return True
     return isinstance(factor, Sum | Symbol) and any(isinstance(b, Function) for b in before)
 

@@ -9,10 +9,10 @@ import re
 import unicodedata
 from collections.abc import Iterator, Mapping
 
+from eomgen.latex_name import GREEK, checked
 from eomgen.mechanics import motions
-from eomgen.mechanics.equations import virtual_name
+from eomgen.mechanics.equations import jump_name, virtual_name
 from eomgen.model import Coordinate, Input, Model, Parameter, Prescribed
-from eomgen.render.latex_override import GREEK, checked
 
 LIKE_LATIN = {
     "omicron": "o", "Alpha": "A", "Beta": "B", "Epsilon": "E", "Zeta": "Z", "Eta": "H",
@@ -90,6 +90,7 @@ def table(model: Model) -> Mapping[str, str]:
         names[symbol] = dotted(spelling, dots)
     for c in model.coordinates:
         names[virtual_name(c.name)] = rf"\delta {names[c.symbol.name]}"
+        names[jump_name(c.name)] = rf"\Delta {names[c.rate.name]}"
     for q in model.quaternions:
         for i, axis in enumerate(motions.AXES):
             name = motions.turn_name(q, i)

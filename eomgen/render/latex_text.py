@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
+from eomgen.latex_name import GREEK
 from eomgen.render.latex_names import latin_letters
-from eomgen.render.latex_override import GREEK
 
 SPECIAL = {
     "\\": r"\textbackslash{}",

@@ -1,4 +1,4 @@
-"""A function as machines like it: powers as products, no dead values, operations counted."""
+"""A function as machines like it: powers as products, waves named, no dead values."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -17,15 +17,20 @@ from eomgen.program import (
     Solve,
     Statement,
     Value,
+    operands,
 )
 
 UNROLLED = 64  # largest exponent written as products
 ONE = Number(Fraction(1))
+PLAIN = frozenset(("add", "subtract", "multiply", "divide"))  # these stay as they are
 Name = Callable[[Expression], Value]  # makes an assignment of its argument
 
 
 def lower(function: Function) -> Function:
-    """The same function without integer or half-integer powers and without unused values."""
+    """The same function without integer or half-integer powers and without unused values.
+
+    Every sine and cosine has a statement of its own.
+    """
     statements: list[Statement] = []
     fresh = _fresh_names(function)
 
@@ -35,15 +40,14 @@ def lower(function: Function) -> Function:
         return value
 
     for statement in function.statements:
-        lowered = _map(statement, lambda e: _without_powers(e, name))
-        statements.append(lowered)
-    results = tuple(_without_powers(e, name) for e in function.results)
+        statements.append(_lowered(statement, name))
+    results = tuple(_simple(e, name) for e in function.results)
     return _without_dead_values(replace(function, statements=tuple(statements), results=results))
 
 
 def _fresh_names(function: Function) -> Iterator[str]:
     taken = {n for s in function.statements for n in defined(s)}
-    return (f"power_{i}" for i in count(1) if f"power_{i}" not in taken)
+    return (f"inner_{i}" for i in count(1) if f"inner_{i}" not in taken)
 
 
 def defined(statement: Statement) -> tuple[str, ...]:
@@ -54,17 +58,6 @@ def defined(statement: Statement) -> tuple[str, ...]:
         case Solve(names, _, _):
             return names
     return ()
-
-
-def operands(statement: Statement) -> tuple[Expression, ...]:
-    """The expressions that a statement reads."""
-    match statement:
-        case Assign(_, expression):
-            return (expression,)
-        case RequirePositive(value, scale):
-            return (value, scale)
-        case Solve(_, matrix, right):
-            return matrix + right
 
 
 def _map(statement: Statement, change: Callable[[Expression], Expression]) -> Statement:
@@ -78,11 +71,24 @@ def _map(statement: Statement, change: Callable[[Expression], Expression]) -> St
             return Solve(names, tuple(map(change, matrix)), tuple(map(change, right)))
 
 
-def _without_powers(expression: Expression, name: Name) -> Expression:
+def _lowered(statement: Statement, name: Name) -> Statement:
+    """The statement with simple expressions; one that names a wave is left to do so."""
+    match statement:
+        case Assign(_, Apply("sin" | "cos" as wave, (angle,))):
+            return replace(statement, expression=Apply(wave, (_simple(angle, name),)))
+    return _map(statement, lambda e: _simple(e, name))
+
+
+def _simple(expression: Expression, name: Name) -> Expression:
+    """The expression without integer powers, every sine and cosine in it named before."""
     if not isinstance(expression, Apply):
         return expression
-    changed = tuple(_without_powers(e, name) for e in expression.operands)
+    changed = tuple([_simple(e, name) for e in expression.operands])
+    if expression.operator in PLAIN:
+        return Apply(expression.operator, changed)
     match (expression.operator, changed):
+        case ("sin" | "cos" as wave, _):
+            return name(Apply(wave, changed))
         case ("power", (base, Number(exponent))) if abs(exponent) <= UNROLLED:
             if exponent.denominator == 1:
                 return _power(base, int(exponent), name)
@@ -115,24 +121,29 @@ def _product(base: Expression, exponent: int, name: Name) -> Expression:
     return Apply("multiply", (root, root))
 
 
-def atoms(expression: Expression) -> Iterator[Number | Read | Value]:
+def atoms(expression: Expression) -> list[Number | Read | Value]:
     """The numbers, arguments and values in an expression, from left to right."""
-    if isinstance(expression, Apply):
-        for operand in expression.operands:
-            yield from atoms(operand)
-    else:
-        yield expression
+    found: list[Number | Read | Value] = []
+    stack = [expression]
+    while stack:
+        part = stack.pop()
+        if isinstance(part, Apply):
+            stack.extend(reversed(part.operands))
+        else:
+            found.append(part)
+    return found
 
 
 def _without_dead_values(function: Function) -> Function:
     """Backward over the statements: an assignment stays if something after it reads it."""
-    alive = {a for e in function.results for a in atoms(e)}
+    alive = {a.name for e in function.results for a in atoms(e) if isinstance(a, Value)}
     kept: list[Statement] = []
     for statement in reversed(function.statements):
-        if isinstance(statement, Assign) and Value(statement.name) not in alive:
+        if isinstance(statement, Assign) and statement.name not in alive:
             continue
         kept.append(statement)
-        alive.update(a for e in operands(statement) for a in atoms(e))
+        for expression in operands(statement):
+            alive.update([a.name for a in atoms(expression) if isinstance(a, Value)])
     return replace(function, statements=tuple(reversed(kept)))
 
 
@@ -144,11 +155,11 @@ def expressions(function: Function) -> tuple[Expression, ...]:
 
 def operations(function: Function) -> Counter[str]:
     """How often each operator is applied; the loop of a `Solve` is not counted."""
-
-    def applied(expression: Expression) -> Iterator[str]:
-        if isinstance(expression, Apply):
-            yield expression.operator
-            for operand in expression.operands:
-                yield from applied(operand)
-
-    return Counter(o for e in expressions(function) for o in applied(e))
+    counts: Counter[str] = Counter()
+    stack = list(expressions(function))
+    while stack:
+        part = stack.pop()
+        if isinstance(part, Apply):
+            counts[part.operator] += 1
+            stack.extend(part.operands)
+    return counts

@@ -6,6 +6,8 @@ from collections.abc import Iterable
 
 def identifier(name: str) -> str:
     """A plain ASCII identifier: phi' becomes phi_dot, a letter outside ASCII its code point."""
+    if name.isascii() and name.isidentifier() and name[0] != "_":
+        return name
     plain = "".join(_character(c) for c in name.replace("'", "_dot"))
     return plain if plain[:1].isalpha() else f"n{plain}"
 

@@ -12,26 +12,29 @@ from eomgen.algebra import normal
 from eomgen.algebra.closed import ClosedForm
 from eomgen.algebra.normal import Form
 from eomgen.mechanics import motions
-from eomgen.mechanics.equations import Contribution, Derivation, Equation, LagrangeRow
+from eomgen.mechanics.contact_forms import ContactForms
+from eomgen.mechanics.equations import Contribution, Derivation, LagrangeRow
+from eomgen.mechanics.free_bodies import FreeBodies
 from eomgen.mechanics.motions import Motion
+from eomgen.mechanics.principles import Worked
 from eomgen.model import AXES, SPACES, Quaternion
 from eomgen.render import (
     arrange,
-    arrange_equation,
     latex_style,
+    notes_contacts,
     notes_data,
+    notes_equation,
     notes_links_names,
     notes_links_page,
     notes_matrix,
+    notes_principles,
+    notes_reactions,
     text_style,
     tree,
     words,
 )
-from eomgen.render.arrange_equation import RIGHT
 from eomgen.render.notes_links import Links
 from eomgen.render.notes_page import (
-    ENOUGH,
-    LARGEST,
     How,
     Page,
     arranged,
@@ -43,7 +46,6 @@ from eomgen.render.style import Style
 from eomgen.render.tree import Tree
 
 REPEATED = 60  # terms of a Lagrangian that is written out below T and V
-PARTS = ("inertia", "damping", "elastic", "gravity", "other", *RIGHT)
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,9 @@ class Notes:
     check: str = ""
     steps: bool = False  # whether the text shows the partial derivatives; LaTeX always does
     links: Links | None = None  # what is known of the constraints
+    worked: Worked | None = None  # the formalism that was asked for, where it is not as ever
+    free: FreeBodies | None = None  # what holds the bodies, where it is shown
+    contacts: tuple[ContactForms, ...] = ()
 
     @property
     def name(self) -> str:
@@ -75,6 +80,8 @@ def text_context(notes: Notes) -> dict[str, object]:
 def context(notes: Notes, style: Style) -> dict[str, object]:
     """Every formula of the notes, spelled."""
     names = notes_links_names.aliases(notes.derivation)
+    names = {**names, **notes_principles.aliases(notes.derivation, notes.worked, notes.free)}
+    names = {**names, **notes_contacts.aliases(notes.derivation, notes.contacts)}
     style = notes_links_names.with_multipliers(style, names)
     page = Page(notes.derivation, notes.language, style)
     model = notes.derivation.model
@@ -93,6 +100,9 @@ def context(notes: Notes, style: Style) -> dict[str, object]:
         "steps": tuple(_step(page, m, r) for m, r in _by_motion(page)),
         **_equations(page),
         "matrix": notes_matrix.matrix(page),
+        "contacts": tuple(notes_contacts.contact(page, c) for c in notes.contacts),
+        **notes_reactions.tables(page, notes.free),
+        **notes_principles.tables(page, notes.worked),
     }
 
 
@@ -247,27 +257,8 @@ def _equations(page: Page) -> dict[str, object]:
     ]
     return {
         "rates": style.display([(q, formula(page, arrange.motion, r)) for q, r in rates]),
-        "equations": tuple(_equation(page, e) for e in d.equations),
+        "equations": tuple(notes_equation.shown(page, e) for e in d.equations),
         "in_speeds": bool(speeds),
         "turns": _turns_said(page),
         "constraint_equations": notes_links_page.equations(page),
     }
-
-
-def _readable(found: Tree) -> Tree | int:
-    """The tree, or its size where nobody would read it."""
-    size = tree.size(found)
-    return size if size > LARGEST else found
-
-
-def _equation(page: Page, row: Equation) -> dict[str, str]:
-    """One equation, and the words before it: what it was divided by."""
-    style = page.style
-    count = sum(len(form.terms) for part in PARTS if (form := getattr(row, part)))
-    if count > ENOUGH:
-        return {"body": style.equation(spelled(page, count), "0"), "said": page.words["equation"]}
-    found = arrange_equation.equation(page.arranger, row)
-    left, right = (spelled(page, _readable(side)) for side in (found.left, found.right))
-    divisor = "" if found.divisor == tree.ONE else style.inline(style.formula(found.divisor))
-    said = page.words["divided"].format(divisor=divisor) if divisor else page.words["equation"]
-    return {"body": style.equation(left, right), "said": said}

@@ -46,9 +46,13 @@ def arranged(page: Page, how: How, form: Form) -> Tree | int:
     """The tree, or the number of its terms where they are too many to be read."""
     if len(form.terms) > ENOUGH:
         return len(form.terms)
-    found = how(page.arranger, form)
-    count = tree.size(found)
-    return count if count > LARGEST else found
+    return readable(how(page.arranger, form))
+
+
+def readable(found: Tree) -> Tree | int:
+    """The tree, or its size where nobody would read it."""
+    size = tree.size(found)
+    return size if size > LARGEST else found
 
 
 def spelled(page: Page, found: Tree | int) -> str:

@@ -1,10 +1,12 @@
 """Functions of a program as text: arguments, steps and results, for a template to lay out."""
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from eomgen.program import (
     ARGUMENTS,
     OPERATORS,
+    Apply,
     Assign,
     Expression,
     Function,
@@ -14,13 +16,20 @@ from eomgen.program import (
     Solve,
     Statement,
     Value,
+    operands,
 )
 from eomgen.render.code import Names, expression
 from eomgen.render.dialects import Dialect
 from eomgen.render.lowered import atoms, expressions, lower, operations
 from eomgen.render.names import escaped, prefix
+from eomgen.render.parts import Part, divided
 
 COUNTED = {"add": "+", "subtract": "-", "negate": "-", "multiply": "*", "divide": "/"}
+READ = (*ARGUMENTS, "constants")
+ROWS = ("state", "accelerations", "inputs")  # what differs between the states of a batch
+WAVE_KINDS = {"sin": "sine", "cos": "cosine"}
+WORK = "work"  # the array of values that cross between the parts of a function
+WAVES = "waves"  # the array of sines and cosines of a batch
 
 
 @dataclass(frozen=True)
@@ -35,11 +44,16 @@ class Argument:
 
 @dataclass(frozen=True)
 class Step:
-    """One statement; `kind` is `assign`, `require` or `solve` and says which fields are used."""
+    """One statement; `kind` says which fields are used.
+
+    `assign`; `sine` or `cosine` of an expression, `pair`: both, the cosine called `other`;
+    `require`; `solve`.
+    """
 
     kind: str
     name: str = ""
     expression: str = ""
+    other: str = ""
     scale: str = ""
     values: tuple[tuple[str, int], ...] = ()  # of a solve: the names that are read, and where
     matrix: tuple[str, ...] = ()
@@ -48,15 +62,58 @@ class Step:
 
 
 @dataclass(frozen=True)
+class Body:
+    """Statements as text with all that they need: of a function, or of a part of one."""
+
+    arguments: tuple[Argument, ...]
+    steps: tuple[Step, ...]
+    results: tuple[tuple[int, str], ...]  # where each goes, and what
+    uses: tuple[str, ...]  # which of `READ` and `WORK` are read
+
+
+@dataclass(frozen=True)
+class Wave:
+    """Sines and cosines of an argument, for all lanes in a loop of their own.
+
+    They go to `slot` of `WAVES`, of a pair the cosine to the next.
+    """
+
+    kind: str
+    source: str
+    index: int
+    slot: int
+
+    @property
+    def slots(self) -> int:
+        """How many numbers there are."""
+        return 2 if self.kind == "pair" else 1
+
+
+@dataclass(frozen=True)
+class Lanes:
+    """A function, or a part of one, for many states: what waves it reads, and the rest."""
+
+    waves: tuple[Wave, ...]
+    body: Body
+
+    @property
+    def slots(self) -> int:
+        """The length of `WAVES`."""
+        return sum(w.slots for w in self.waves)
+
+
+@dataclass(frozen=True)
 class Routine:
-    """A function as text."""
+    """A function as text; if it is long, `parts` compute it over an array of `slots` numbers."""
 
     name: str
     about: str
     shape: tuple[int, ...]
-    arguments: tuple[Argument, ...]
-    steps: tuple[Step, ...]
-    results: tuple[str, ...]
+    body: Body
+    parts: tuple[Body, ...]
+    lanes: tuple[Lanes, ...]  # of a batch: for every part, or for the whole
+    slots: int
+    size: int  # the number of results
     operators: frozenset[str]
     operations: str  # such as `3 +  5 *  1 sin`
     takes: tuple[str, ...]  # which of `ARGUMENTS` a caller passes
@@ -67,84 +124,189 @@ class Routine:
 def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
     """A function of the program as text, every argument that it reads in a variable of its own."""
     lowered = lower(function)
-    trees = expressions(lowered)
-    read = _ordered_reads(trees)
-    values = tuple(dict.fromkeys(a for e in trees for a in atoms(e) if isinstance(a, Value)))
-    given = _argument_names(program)
-    labels = [given[r.argument][r.index] for r in read] + [v.name for v in values]
-    codes = escaped(labels, dialect.reserved | _own_names(program, lowered))
-    names: dict[Expression, str] = dict(zip((*read, *values), codes, strict=True))
-    names[Read("time", 0)] = "t"
-    arguments = tuple(
-        Argument(code, r.argument, r.index, label)
-        for code, r, label in zip(codes, read, labels, strict=False)
-    )
+    found = _survey(expressions(lowered))
+    text = _Text(dialect, _names(lowered, found, program, dialect), _labels(program))
+    cut = divided(lowered, dialect.longest)
+    whole = Part(lowered.statements, (), tuple((e, i) for i, e in enumerate(lowered.results)))
     return Routine(
         lowered.name,
         lowered.about,
         lowered.shape,
-        arguments,
-        tuple(_step(s, dialect, names) for s in lowered.statements),
-        tuple(expression(e, dialect, names) for e in lowered.results),
+        text.body(whole, found) if cut is None else Body((), (), (), found.used),
+        () if cut is None else tuple(text.body(part, _survey_of(part)) for part in cut.parts),
+        tuple(map(text.lanes, (whole,) if cut is None else cut.parts)) if dialect.lanes else (),
+        0 if cut is None else cut.slots,
+        len(lowered.results),
         frozenset(operations(lowered)),
         _counted(lowered),
         function.arguments,
-        _used(trees),
+        found.used,
         _checks_pivots(function),
     )
 
 
+@dataclass(frozen=True)
+class _Survey:
+    """What expressions read: arguments by declaration, without the time, and names of values."""
+
+    reads: tuple[Read, ...]
+    values: tuple[str, ...]
+    used: tuple[str, ...]  # which of `READ`
+
+
+def _survey(trees: Iterable[Expression]) -> _Survey:
+    """All that is read, found in one pass."""
+    reads: dict[tuple[str, int], Read] = {}
+    values: dict[str, None] = {}
+    for tree in trees:
+        for atom in atoms(tree):
+            if isinstance(atom, Value):
+                values[atom.name] = None
+            elif isinstance(atom, Read):
+                reads[atom.argument, atom.index] = atom
+    found = {argument for argument, _ in reads}
+    given = [r for r in reads.values() if r.argument != "time"]
+    given.sort(key=lambda r: (READ.index(r.argument), r.index))
+    return _Survey(tuple(given), tuple(values), tuple(a for a in READ if a in found))
+
+
+def _survey_of(part: Part) -> _Survey:
+    inside = (e for s in part.statements for e in operands(s))
+    return _survey([*inside, *(e for e, _ in part.stores)])
+
+
+def _labels(program: Program) -> dict[str, list[str]]:
+    """The names of the components of every argument in the specification."""
+    prepared = program.prepare.results if program.prepare else ()
+    return {
+        "time": ["t"],
+        "state": [v.name for v in program.coordinates + program.speeds],
+        "accelerations": [f"{v.name}'" for v in program.speeds],
+        "inputs": [v.name for v in program.inputs],
+        "parameters": [v.name for v in program.parameters],
+        "constants": [f"c{i}" for i in range(len(prepared))],
+    }
+
+
+def _names(
+    function: Function, found: _Survey, program: Program, dialect: Dialect
+) -> dict[Expression, str]:
+    """The variable of everything that a function reads or computes."""
+    given = _labels(program)
+    labels = [given[r.argument][r.index] for r in found.reads] + list(found.values)
+    codes = escaped(labels, dialect.reserved | _own_names(program, function))
+    read: list[Expression] = [*found.reads, *map(Value, found.values)]
+    return dict(zip(read, codes, strict=True)) | {Read("time", 0): "t"}
+
+
 def _own_names(program: Program, function: Function) -> frozenset[str]:
     """Names that our templates give to types, solvers and their arrays."""
-    own = {f"{prefix(program.name)}_{kind}" for kind in ("real", "params", "status")}
-    for place, statement in enumerate(function.statements, start=1):
+    own = {f"{prefix(program.name)}_{kind}" for kind in ("real", "params", "model", "status")}
+    for statement in function.statements:
         if isinstance(statement, Solve):
+            place = statement.names[0]
             own |= {f"matrix_of_{place}", f"solution_of_{place}", f"solve_{statement.size}"}
     return frozenset(own)
-
-
-def _ordered_reads(trees: tuple[Expression, ...]) -> tuple[Read, ...]:
-    """What is read of every argument but the time, by declaration."""
-    found = {a for e in trees for a in atoms(e) if isinstance(a, Read) and a.argument != "time"}
-    return tuple(sorted(found, key=lambda r: (ARGUMENTS.index(r.argument), r.index)))
-
-
-def _used(trees: tuple[Expression, ...]) -> tuple[str, ...]:
-    found = {a.argument for e in trees for a in atoms(e) if isinstance(a, Read)}
-    return tuple(a for a in ARGUMENTS if a in found)
 
 
 def _checks_pivots(function: Function) -> bool:
     return any(isinstance(s, RequirePositive | Solve) for s in function.statements)
 
 
-def _argument_names(program: Program) -> dict[str, list[str]]:
-    return {
-        "state": [v.name for v in program.coordinates + program.speeds],
-        "accelerations": [f"{v.name}'" for v in program.speeds],
-        "inputs": [v.name for v in program.inputs],
-        "parameters": [v.name for v in program.parameters],
-    }
+@dataclass(frozen=True)
+class _Text:
+    """How a function is spelled: the names of its values and the labels of its arguments."""
+
+    dialect: Dialect
+    names: Names
+    labels: dict[str, list[str]]
+
+    def of(self, tree: Expression) -> str:
+        """An expression."""
+        return expression(tree, self.dialect, self.names)
+
+    def body(self, part: Part, found: _Survey) -> Body:
+        """The statements of a function, or of a part of one, which read what was found."""
+        arguments = tuple(
+            Argument(self.names[r], r.argument, r.index, self.labels[r.argument][r.index])
+            for r in found.reads
+        )
+        loads = tuple(Argument(self.names[v], WORK, slot, v.name) for v, slot in part.loads)
+        return Body(
+            arguments + loads,
+            tuple(self.steps(part.statements)),
+            tuple((place, self.of(e)) for e, place in part.stores),
+            (*found.used, WORK),
+        )
+
+    def lanes(self, part: Part) -> Lanes:
+        """The statements for many states, without the waves of arguments, which come first."""
+        found: dict[Read, dict[str, str]] = {}
+        rest: list[Statement] = []
+        for statement in part.statements:
+            match statement:
+                case Assign(name, Apply("sin" | "cos" as wave, (Read() as angle,))) if (
+                    angle.argument in ROWS and wave not in found.get(angle, {})
+                ):
+                    found.setdefault(angle, {})[wave] = name
+                case _:
+                    rest.append(statement)
+        waves, read, slot = [], [], 0
+        for angle, names in found.items():
+            kind = "pair" if len(names) == 2 else WAVE_KINDS[next(iter(names))]
+            waves.append(Wave(kind, angle.argument, angle.index, slot))
+            for name in (names[w] for w in WAVE_KINDS if w in names):
+                read.append(Argument(self.names[Value(name)], WAVES, slot, name))
+                slot += 1
+        left = replace(part, statements=tuple(rest))
+        body = self.body(left, _survey_of(left))
+        return Lanes(tuple(waves), replace(body, arguments=body.arguments + tuple(read)))
+
+    def steps(self, statements: Sequence[Statement]) -> Iterator[Step]:
+        """The statements in order; a sine and its cosine are one step where the dialect likes."""
+        waiting: Statement | None = None
+        for statement in statements:
+            pair = _pair(waiting, statement) if self.dialect.pairs else None
+            if pair is not None:
+                sine, cosine, angle = pair
+                yield Step("pair", self.names[sine], self.of(angle), self.names[cosine])
+                waiting = None
+                continue
+            if waiting is not None:
+                yield self.step(waiting)
+            waiting = statement
+        if waiting is not None:
+            yield self.step(waiting)
+
+    def step(self, statement: Statement) -> Step:
+        """One statement."""
+        match statement:
+            case Assign(name, Apply("sin" | "cos" as wave, (angle,))) if self.dialect.pairs:
+                return Step(WAVE_KINDS[wave], self.names[Value(name)], self.of(angle))
+            case Assign(name, tree):
+                return Step("assign", self.names[Value(name)], self.of(tree))
+            case RequirePositive(value, scale):
+                return Step("require", self.names[value], scale=self.of(scale))
+            case Solve(unknowns, matrix, right):
+                places = [(Value(name), i) for i, name in enumerate(unknowns)]
+                return Step(
+                    "solve",
+                    name=unknowns[0],
+                    values=tuple((self.names[v], i) for v, i in places if v in self.names),
+                    matrix=tuple(map(self.of, matrix)),
+                    right=tuple(map(self.of, right)),
+                    size=statement.size,
+                )
 
 
-def _step(statement: Statement, dialect: Dialect, names: Names) -> Step:
-    def text(tree: Expression) -> str:
-        return expression(tree, dialect, names)
-
-    match statement:
-        case Assign(name, tree):
-            return Step("assign", names[Value(name)], text(tree))
-        case RequirePositive(value, scale):
-            return Step("require", names[value], scale=text(scale))
-        case Solve(unknowns, matrix, right):
-            places = [(Value(name), i) for i, name in enumerate(unknowns)]
-            return Step(
-                "solve",
-                values=tuple((names[v], i) for v, i in places if v in names),
-                matrix=tuple(map(text, matrix)),
-                right=tuple(map(text, right)),
-                size=statement.size,
-            )
+def _pair(first: Statement | None, second: Statement) -> tuple[Value, Value, Expression] | None:
+    """Sine, cosine and their angle, where two statements compute these."""
+    match first, second:
+        case Assign(a, Apply("sin", (x,))), Assign(b, Apply("cos", (y,))) if x == y:
+            return Value(a), Value(b), x
+        case Assign(a, Apply("cos", (x,))), Assign(b, Apply("sin", (y,))) if x == y:
+            return Value(b), Value(a), x
+    return None
 
 
 def _counted(function: Function) -> str:

@@ -43,8 +43,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "undecided": "undecided",
         "not_isolated": "not isolated",
         "multipliers_si": "Multipliers are in SI units.",
-        "reactions": "{force} is the force on the first of the two points that coincide, in the"
-        " axes of the world.",
+        "reactions": "{force} is the force of a constraint on its body, or on the first of the two"
+        " points that coincide, in the axes of the world.",
         "not_unique": "The multipliers are not determined, one choice is shown, at: {numbers}.",
         "method": "Method",
         "complete": "The list is complete for the range that was searched.",
@@ -86,8 +86,8 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "undecided": "sin decidir",
         "not_isolated": "no aislada",
         "multipliers_si": "Los multiplicadores están en unidades SI.",
-        "reactions": "{force} es la fuerza sobre el primero de los dos puntos que coinciden, en los"
-        " ejes fijos.",
+        "reactions": "{force} es la fuerza de una ligadura sobre su cuerpo, o sobre el primero de"
+        " los dos puntos que coinciden, en los ejes fijos.",
         "not_unique": "Los multiplicadores no están determinados, se muestra una elección, en:"
         " {numbers}.",
         "method": "Método",
@@ -105,6 +105,10 @@ def of(language: str) -> Mapping[str, str]:
 
 # what the solver says, and what that is in Spanish; `rest`, `end`, `where` are translated in turn
 SPANISH: tuple[tuple[str, str], ...] = (
+    (
+        r"(?P<rest>.+), but for (?P<count>\d+) that the unilateral constraints refuse",
+        "{rest}, salvo {count} que las ligaduras unilaterales no admiten",
+    ),
     (r"(?P<rest>.+?); (?P<end>.+)", "{rest}; {end}"),
     (r"touching (?P<names>[^:]+): (?P<rest>.+)", "en contacto {names}: {rest}"),
     # how it was searched

@@ -23,6 +23,12 @@ class Style:
     index: Callable[..., str]  # T, bob: T_bob; names of bodies and points
     sub: Callable[[str, str], str]  # Q, spelled symbol: Q_s
     dotted: Callable[[str], str]  # x_bob: its rate
+    accelerated: Callable[[str], str]  # x_bob: its second rate
+    after: Callable[[str], str]  # a rate after an impact
+    before: Callable[[str], str]  # and before it
+    size: Callable[[str], str]  # |F_t|
+    sign: Callable[[str], str]  # the sign of v_t
+    fraction: Callable[[str, str], str]  # v_t / |v_t|
     partial: Callable[[str, str], str]  # dL/ds
     rate: Callable[[str], str]  # d/dt (...)
     gyroscopic: Callable[[str, str], str]  # (w x dL/dw) of a quaternion, about one of its axes

@@ -32,6 +32,12 @@ class Target:
     context: Callable[[Any], dict[str, object]]
 
 
+FORMALISMS = {
+    "newton": "Newton's and Euler's laws",
+    "dalembert": "d'Alembert's principle",
+    "lagrange1": "Lagrange's first kind in Cartesian coordinates",
+    "kane": "Kane's method",
+}
 TARGETS = {
     "latex": Target(
         "lecture notes: pdflatex with amsmath",
@@ -63,6 +69,22 @@ TARGETS = {
         {"{name}.txt": "text/derivation.txt.j2"},
         notes.text_context,
     ),
+    **{
+        f"latex-{method}": Target(
+            f"lecture notes by {said}: pdflatex with amsmath",
+            {"{name}.tex": f"latex/{method}.tex.j2"},
+            notes.latex_context,
+        )
+        for method, said in FORMALISMS.items()
+    },
+    **{
+        f"text-{method}": Target(
+            f"Unicode text by {said} for the terminal",
+            {"{name}.txt": f"text/{method}.txt.j2"},
+            notes.text_context,
+        )
+        for method, said in FORMALISMS.items()
+    },
     "statics-latex": Target(
         "lecture notes on equilibrium: pdflatex with amsmath",
         {"{name}_statics.tex": "latex/statics.tex.j2"},

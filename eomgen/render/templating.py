@@ -1,7 +1,6 @@
 """Templates: where ours are, how a user's folder overrides them, whose mistake an error is."""
 
 import re
-import textwrap
 import traceback
 from pathlib import Path
 from typing import Any
@@ -33,16 +32,16 @@ class _Sandbox(ImmutableSandboxedEnvironment):
 
 def wrap(text: str, indent: int = 0, hanging: int = 4, width: int = 100) -> str:
     """`text` broken at spaces; each line after the first starts `hanging` further right."""
-    return "\n".join(
-        textwrap.wrap(
-            text,
-            width,
-            initial_indent=" " * indent,
-            subsequent_indent=" " * (indent + hanging),
-            break_long_words=False,
-            break_on_hyphens=False,
-        )
-    )
+    left, further = " " * indent, " " * (indent + hanging)
+    if len(text) + indent <= width and "\n" not in text:
+        return left + text
+    lines, line = [], left
+    for word in text.split():
+        if len(line) + len(word) > width and line.strip():
+            lines.append(line.rstrip())
+            line = further
+        line += word + " "
+    return "\n".join([*lines, line.rstrip()])
 
 
 def one_line(text: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from fractions import Fraction
 
-from eomgen.mechanics.equations import virtual_name
+from eomgen.mechanics.equations import JUMP, virtual_name
 from eomgen.render.tree import Function, Number, Power, Product, Sum, Symbol, Tree, split_sign
 
 MINUS = "\u2212"
@@ -26,9 +26,11 @@ VIRTUAL = virtual_name("")
 
 
 def name(spelling: str) -> str:
-    """A name of the spec: theta_1' as θ_1′, delta s as δs."""
+    """A name of the spec: theta_1' as θ_1′, delta s as δs, the change of a rate as Δs′."""
     if spelling.startswith(VIRTUAL):
         return "δ" + name(spelling.removeprefix(VIRTUAL))
+    if spelling.startswith(JUMP):
+        return "Δ" + name(f"{spelling.removeprefix(JUMP)}'")
     plain = spelling.rstrip("'")
     primes = len(spelling) - len(plain)
     words = re.sub(r"[^\W\d_]+", lambda found: GREEK.get(found.group(), found.group()), plain)

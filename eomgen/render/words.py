@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from eomgen.errors import UsageError
+from eomgen.render import words_contacts, words_principles
 
 WORDS: Mapping[str, Mapping[str, str]] = {
     "en": {
@@ -229,7 +230,7 @@ def of(language: str) -> Mapping[str, str]:
     """The words of a language. Raises UsageError where there is none."""
     if language not in WORDS:
         raise UsageError(f"no notes in {language!r}: choose {' or '.join(WORDS)}")
-    return WORDS[language]
+    return {**WORDS[language], **words_principles.WORDS[language], **words_contacts.WORDS[language]}
 
 
 def title(titles: Mapping[str, str], language: str) -> str:

@@ -57,6 +57,11 @@ INSTEAD = {
 }  # fmt: skip
 
 
+def digits(mantissa: str) -> int:
+    """How many digits a number has: its sign and its point are none."""
+    return sum(c.isdigit() for c in mantissa)
+
+
 @dataclass(frozen=True)
 class Token:
     """A piece of the text from `start` up to `end`; kind is number, name, mark or end."""
@@ -243,7 +248,7 @@ class _Parser:
     def number(self, token: Token) -> Fraction:
         """The exact value, within limits."""
         mantissa, _, exponent = token.text.lower().partition("e")
-        if len(mantissa) > MOST_DIGITS:
+        if digits(mantissa) > MOST_DIGITS:
             raise self.mistake(token, f"a number has at most {MOST_DIGITS} digits", "E202")
         if len(exponent) > 6 or abs(int(exponent or 0)) > MOST_DECIMAL_EXPONENT:
             limit = f"a decimal exponent is at most {MOST_DECIMAL_EXPONENT}"

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import sympy as sp
 
+from eomgen import latex_name
 from eomgen.dimension import NONE
 from eomgen.model import Description
 from eomgen.spec import lower, units
@@ -137,8 +138,12 @@ def field(node: Node, name: str) -> Scalar | None:
 
 
 def description(node: Node, unit: str = "", known: Known | None = None) -> Description:
-    """Unit, LaTeX and words of a name."""
+    """Unit, LaTeX and words of a name. Raises `Mistake` where the LaTeX is no name."""
     latex = field(node, "latex")
+    if latex is not None and not latex_name.is_name(latex.text.strip()):
+        raise Mistake(
+            latex, "E516", f"{shown(latex.text)} is not the LaTeX of a name", latex_name.HINT
+        )
     dimension = known.dimension if known else None
     about = text_of(field(node, "about"))
     return Description(unit, dimension, latex.text if latex else None, about)

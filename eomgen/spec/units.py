@@ -22,7 +22,7 @@ from eomgen.dimension import (
     TIME,
     Dimension,
 )
-from eomgen.spec.formula import MOST_DECIMAL_EXPONENT, MOST_DIGITS, NUMBER
+from eomgen.spec.formula import MOST_DECIMAL_EXPONENT, MOST_DIGITS, NUMBER, digits
 from eomgen.spec.ledger import Mistake, shown, suggestion
 from eomgen.spec.reader import Point, Scalar
 from eomgen.spec.syntax import Quantity, Span
@@ -161,7 +161,7 @@ def number(source: Scalar, text: str) -> sp.Rational:
     """The exact number; raises `Mistake` past the limits on digits."""
     mantissa, _, exponent = text.lower().partition("e")
     over, _, under = mantissa.partition("/")
-    if max(len(over), len(under)) > MOST_DIGITS:
+    if max(map(digits, (over, under))) > MOST_DIGITS:
         raise Mistake(source, "E202", f"a number has at most {MOST_DIGITS} digits")
     if len(exponent) > 6 or abs(int(exponent.partition("/")[0] or 0)) > MOST_DECIMAL_EXPONENT:
         raise Mistake(source, "E202", f"a decimal exponent is at most {MOST_DECIMAL_EXPONENT}")

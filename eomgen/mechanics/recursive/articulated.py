@@ -176,11 +176,13 @@ def _scale(tree: Tree, joint: Joint, bounds: Sequence[Vector[Node]], c: int) -> 
     return total
 
 
-def solve(found: Articulated, right: Sequence[Node]) -> tuple[Node, ...]:
-    """The solution x of M x = y."""
+def solve(
+    found: Articulated, right: Sequence[Node], wrenches: Sequence[Vector[Node] | None] = ()
+) -> tuple[Node, ...]:
+    """The solution x of M x = y - (wrenches of the places, gathered at the coordinates)."""
     tree, zero = found.tree, found.tree.gravity[0].graph.zero
     y = list(right)
-    forces: list[Vector[Node] | None] = [None] * len(tree.places)
+    forces = list(wrenches) or [None] * len(tree.places)
     used = {e.joint: e for e in found.eliminations}
     for joint in reversed(tree.joints):
         if joint in used:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from eomgen.algebra import cost, ldl
@@ -11,6 +11,7 @@ from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.recursive import articulated, loads, recursion
 from eomgen.mechanics.recursive.lumping import lumped
 from eomgen.mechanics.recursive.records import Tree
+from eomgen.mechanics.recursive.recursion import Loads
 
 LARGEST_TRIED = 12  # coordinates; above, a factorisation that must cost more is not built
 LARGEST_COMPARED = 60  # coordinates; a larger tree is lumped without counting the alternative
@@ -34,18 +35,20 @@ class Engine:
         return f"{self.method}{how}, {self.operations} operations"
 
 
-Solver = Callable[[Tree, Sequence[Node]], tuple[tuple[Node, ...], ldl.Pivots]]
+Solver = Callable[[Tree, Loads], tuple[tuple[Node, ...], ldl.Pivots]]
 
 
-def by_articulated_bodies(tree: Tree, right: Sequence[Node]) -> tuple[tuple[Node, ...], ldl.Pivots]:
-    """M^-1 y without M."""
+def by_articulated_bodies(tree: Tree, applied: Loads) -> tuple[tuple[Node, ...], ldl.Pivots]:
+    """M^-1 (Q - h) without M; the wrenches of the bias go to the root with the solution's."""
     found = articulated.factor(tree)
-    return articulated.solve(found, right), found.pivots
+    wrenches = recursion.wrenches(tree, falling=True, loads=applied)
+    return articulated.solve(found, applied.forces, wrenches), found.pivots
 
 
-def by_composite_inertias(tree: Tree, right: Sequence[Node]) -> tuple[tuple[Node, ...], ldl.Pivots]:
-    """M^-1 y by L' D L of M, from the leaves to the root: no fill."""
+def by_composite_inertias(tree: Tree, applied: Loads) -> tuple[tuple[Node, ...], ldl.Pivots]:
+    """M^-1 (Q - h) by L' D L of M, from the leaves to the root: no fill."""
     matrix = recursion.mass_matrix(tree)
+    right = [-row for row in recursion.inverse_dynamics(tree, falling=True, loads=applied)]
     order = tree.order
     rows = [[matrix[i][j] for j in order] for i in order]
     (solution,), pivots = ldl.solve(rows, [right[i] for i in order])
@@ -72,11 +75,10 @@ def choose(kinematics: Kinematics[Node], tree: Tree) -> Engine:
         variants.append((False, tree))
     best: Engine | None = None
     for is_lumped, variant in variants:
-        right = [-r for r in recursion.inverse_dynamics(variant, falling=True, loads=applied)]
         for method, solver in METHODS.items():
             if best and method != best.method and _is_hopeless(variant, best.operations):
                 continue
-            solution, pivots = solver(variant, right)
+            solution, pivots = solver(variant, applied)
             count = cost.operations(solution, prepared)
             if best is None or count < best.operations:
                 best = Engine(method, is_lumped, count, variant, solution, pivots)

@@ -60,37 +60,40 @@ def inverse_dynamics(
 
     Rows are those of the coordinates; with `second` = None it is the bias h.
     """
-    wrenches = inertial(tree, accelerations(tree, falling, second))
+    rows = gathered(tree, wrenches(tree, falling, second, loads))
     if loads is None:
-        return gathered(tree, wrenches)
-    for number, applied in loads.wrenches.items():
-        wrenches[number] = _sum(wrenches[number], tuple(-w for w in applied))
-    rows = gathered(tree, wrenches)
+        return rows
     return tuple(row - force for row, force in zip(rows, loads.forces, strict=True))
 
 
-def inertial(tree: Tree, found: Sequence[Vector[Node]]) -> list[Vector[Node] | None]:
-    """The wrench that moves the body of every place."""
-    return [
+def wrenches(
+    tree: Tree, falling: bool, second: Sequence[Node] | None = None, loads: Loads | None = None
+) -> list[Vector[Node] | None]:
+    """The wrench that every place needs for the motion of its body, less what is applied to it."""
+    found = accelerations(tree, falling, second)
+    result = [
         None if place.body is None else place.kind.wrench(place.body, found[i])
         for i, place in enumerate(tree.places)
     ]
+    for number, applied in () if loads is None else loads.wrenches.items():
+        result[number] = _sum(result[number], tuple(-w for w in applied))
+    return result
 
 
 def gathered(tree: Tree, applied: Sequence[Vector[Node] | None]) -> tuple[Node, ...]:
     """The force of every coordinate, from wrenches on places: S' w, and X' w for the base."""
-    wrenches = list(applied)
+    felt = list(applied)
     zero = tree.gravity[0].graph.zero
     result = [zero] * len(tree.order)
     for joint in reversed(tree.joints):
         for number in joint.places:
-            wrench, place = wrenches[number], tree.places[number]
+            wrench, place = felt[number], tree.places[number]
             if wrench is None:
                 continue
             for c, column in place.columns.items():
                 result[c] = result[c] + dot(column, wrench)
             if place.base != GROUND:
-                wrenches[place.base] = _sum(wrenches[place.base], back(place.steps, wrench))
+                felt[place.base] = _sum(felt[place.base], back(place.steps, wrench))
     return tuple(result)
 
 

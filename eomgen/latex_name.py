@@ -36,21 +36,29 @@ PLAIN = re.compile(r"[A-Za-z0-9,*+-]")
 DEEPEST = 8
 
 
+HINT = (
+    r"letters, digits, _ ^ ' { }, Greek letters and accents make a name, such as \varphi, "
+    r"\bar{x}_1, k_{\mathrm{in}}"
+)
+
+
+def is_name(text: str) -> bool:
+    """Whether a text without white space around it is a name and no more."""
+    tokens = TOKEN.findall(text)
+    spaces = re.sub(r"\s", "", text)
+    return "".join(tokens) == spaces and bool(tokens) and _name(tokens, 0, 0) == len(tokens)
+
+
 def checked(name: str, override: str) -> str:
     """The override without white space around it, if it is a name and no more.
 
     Raises:
-        UsageError: it holds anything that a name does not need.
+        UsageError: it holds anything that a name does not need; a spec was refused for it before.
     """
     text = override.strip()
-    tokens = TOKEN.findall(text)
-    spaces = re.sub(r"\s", "", text)
-    if "".join(tokens) == spaces and tokens and _name(tokens, 0, 0) == len(tokens):
+    if is_name(text):
         return text
-    raise UsageError(
-        f"the LaTeX of {name}, {override!r}, is not a name: letters, digits, _ ^ ' {{ }}, Greek "
-        r"letters and accents make one, such as \varphi, \bar{x}_1, k_{\mathrm{in}}"
-    )
+    raise UsageError(f"the LaTeX of {name}, {override!r}, is not a name: {HINT}")
 
 
 def _name(tokens: list[str], at: int, depth: int) -> int:
