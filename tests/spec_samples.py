@@ -208,6 +208,7 @@ energy: {kinetic: m*r'^2/2, potential: m*g*r, dissipation: c*phi'^2/2}
 initial: {s: 10 cm, phi: -20 deg, r: l/2, phi': 1 rpm}
 range: {phi: [-pi/2, 90 deg], s: [-1 m, 1 m]}
 outputs: {power: F*s', lift: {formula: m*(phi''*l + g), unit: N, latex: F_L}, speed: u2*l}
+simulate: {method: rk4, step: 1 ms, formulation: minimal}
 expect:
   dof: 3
   equations: {s: "m*s'' + k*s = F", phi: "0 = 0*phi''"}

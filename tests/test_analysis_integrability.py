@@ -1,5 +1,7 @@
 """Integrability: the growth of brackets decides, and a relation that is shown is proven."""
 
+from fractions import Fraction
+
 import pytest
 import sympy as sp
 from linkages import (
@@ -49,7 +51,7 @@ def equals(form, expected):
     """Whether a form is a formula up to a constant factor, by the canonical form itself."""
     algebra = ClosedForm(form.ring)
     other = algebra.of(expected)
-    ratio = next(form.terms[k] / other.terms[k] for k in form.terms if k in other.terms)
+    ratio = next(Fraction(form.terms[k]) / other.terms[k] for k in form.terms if k in other.terms)
     return algebra.is_zero(form - other * ratio)
 
 

@@ -217,7 +217,7 @@ def test_evaluate_names_multipliers_reactions_and_residuals(call):
     found = evaluated(call, "block_on_incline")
     assert list(found) == [
         "accelerations", "energy", "generalized_forces", "outputs",
-        "multipliers", "reactions", "residuals",
+        "status", "multipliers", "reactions", "residuals",
     ]  # fmt: skip
     force = found["reactions"]["normal_force"]
     assert list(force) == ["on", "x", "y"]

@@ -7,7 +7,7 @@ from spec_samples import CONSTRAINED, EVERYTHING, FREE, LINKED, SLIDER_PENDULUM,
 
 from eomgen import spec
 from eomgen.errors import SpecError
-from eomgen.model import Frame, Place, Turn
+from eomgen.model import Frame, Place, Simulation, Turn
 from eomgen.spec.language import CONSTRAINT, LANGUAGE
 
 ZERO, ONE = sp.S.Zero, sp.S.One
@@ -73,7 +73,8 @@ def test_two_link_arm_hangs_one_frame_on_the_other():
 def test_samples_use_every_key():
     used = {line.split(":")[0] for line in EVERYTHING.splitlines() if line[0].isalpha()}
     assert used == set(LANGUAGE.keys) - {"constraints"}
-    assert all(getattr(read(EVERYTHING), key) for key in used - {"eom", "system"})
+    assert all(getattr(read(EVERYTHING), key) for key in used - {"eom", "system", "simulate"})
+    assert read(EVERYTHING).simulation == Simulation("rk4", sp.Rational(1, 1000), "minimal")
     assert all(f"{key}: " in LINKED for key in CONSTRAINT.keys)
     assert read(LINKED).constraints
     assert read(LINKED).guess
