@@ -20,16 +20,26 @@ BILATERAL = [  # a rough guide has a motion in each mode only
     for n in LINKED
     if any(c.kind != "unilateral" for c in model_of(n).constraints) and not model_of(n).guides
 ]
-WITH_MULTIPLIERS = [
-    case
-    for case in LINKED_CASES
-    if stem(case) in BILATERAL
-    and "multiplier" in (wanted(case), study_of(stem(case)).links.chosen.name)
-    and wanted(case) in ("auto", "multiplier")
-]
+WITH_MULTIPLIERS = [  # in their usual formulation, or on request; the list is tested
+    "andrews_squeezer", "ball_on_turntable", "bead_on_fixed_hoop", "bead_on_turning_hoop",
+    "block_on_incline", "chaplygin_sleigh", "dumbbell", "four_bar", "mass_on_sphere",
+    "massless_coupler", "parallelogram", "rolling_disc_tilting", "rolling_disc_upright",
+    "sleigh_speeds", "slider_crank", "slider_crank_equal", "snakeboard", "bricard-multiplier",
+]  # fmt: skip
 REDUCED = [case for case in LINKED_CASES if wanted(case) in ("minimal", "nullspace")]
 MOVED_BY_CONSTRAINTS = {"ball_on_turntable", "bead_on_turning_hoop"}
 DRIVES = {"andrews_squeezer": ("mom", "beta")}  # a constant moment and the angle that it turns
+
+
+def test_the_list_of_scenes_with_multipliers_is_complete():
+    found = [
+        case
+        for case in LINKED_CASES
+        if stem(case) in BILATERAL
+        and "multiplier" in (wanted(case), study_of(stem(case)).links.chosen.name)
+        and wanted(case) in ("auto", "multiplier")
+    ]
+    assert found == WITH_MULTIPLIERS
 
 
 @pytest.fixture(scope="session")

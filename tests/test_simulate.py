@@ -147,6 +147,15 @@ def test_a_run_that_loses_its_energy_is_a_failure(call):
     simulate(call, "double_pendulum", *words, "--energy-tolerance", 10)
 
 
+@pytest.mark.parametrize("name", ["kapitza_pendulum", "bead_on_turning_hoop"])
+def test_what_depends_on_the_time_is_in_the_balance(call, name):
+    """A pivot that shakes and a hoop that is turned do work, which is no error of the energy."""
+    said = simulate(call, name, "--t-end", 1)
+    found = re.search(r"energy: worst error (\S+) of \S+ J after work of (\S+) J", said.errors)
+    assert float(found[1]) < 5e-5
+    assert abs(float(found[2])) > 1e-4
+
+
 def test_a_run_that_cannot_go_on_says_where_and_keeps_its_rows(call):
     words = ("--method", "rk4", "--step", 0.05, "--t-end", 100)
     text = text_of("spring_mass_chain").replace("k_1: 100 N/m", "k_1: 1e7 N/m")

@@ -6,12 +6,14 @@ from pathlib import Path
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
+from matplotlib.ticker import NullFormatter, ScalarFormatter
 
 from lab.derivation import SERIES, Times
 from lab.derive_one import WHO
 from lab.forward import Column
 
 CARTS = {"cart+2": 2, "cart+4": 4, "cart+8": 8, "cart+16": 16}
+TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500)
 SHOWN = ("cart", "skew arm", "masses")
 
 
@@ -28,6 +30,10 @@ def draw(times: Times, columns: dict[str, Column], compiled: dict[int, float], t
     _compiled(axes[-1], compiled)
     for axis in axes:
         axis.set(xscale="log", yscale="log")
+        axis.xaxis.set_minor_formatter(NullFormatter())
+        low, high = axis.get_xlim()
+        axis.set_xticks([t for t in TICKS if low <= t <= high], minor=False)
+        axis.xaxis.set_major_formatter(ScalarFormatter())
         if axis.get_legend_handles_labels()[0]:
             axis.legend(fontsize=6)
     figure.savefig(to, metadata={"Date": None})

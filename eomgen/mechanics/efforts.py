@@ -39,6 +39,13 @@ class Effort(Generic[S]):
 
 def nonconservative(kinematics: Kinematics[S]) -> Iterator[Effort[S]]:
     """What has neither a potential nor a dissipation function: laws, forces and moments."""
+    yield from forces(kinematics)
+    for moment in kinematics.model.moments:
+        yield moment_of(kinematics, moment)
+
+
+def forces(kinematics: Kinematics[S]) -> Iterator[Effort[S]]:
+    """Laws and forces: what is nonconservative but no moment."""
     model = kinematics.model
     for spring in model.springs:
         if not has_potential(spring):
@@ -54,8 +61,6 @@ def nonconservative(kinematics: Kinematics[S]) -> Iterator[Effort[S]]:
         yield _force(kinematics, force)
     for drive in model.drives:
         yield _drive(kinematics, drive)
-    for moment in model.moments:
-        yield _moment(kinematics, moment)
 
 
 def _force(kinematics: Kinematics[S], force: Force) -> Effort[S]:
@@ -71,7 +76,8 @@ def _drive(kinematics: Kinematics[S], drive: Drive) -> Effort[S]:
     return Effort(drive.name, "force", (kinematics.algebra.of(drive.force),), (rate,))
 
 
-def _moment(kinematics: Kinematics[S], moment: Moment) -> Effort[S]:
+def moment_of(kinematics: Kinematics[S], moment: Moment) -> Effort[S]:
+    """A moment and the angular velocity that it works on."""
     vector = kinematics.vector(moment.components)
     if kinematics.dimensions == 2:
         spin = kinematics.angular_velocity(moment.on)
@@ -93,11 +99,21 @@ def world_spin(kinematics: Kinematics[S], name: str) -> Vector[S]:
 
 def conservative(kinematics: Kinematics[S]) -> Iterator[Effort[S]]:
     """What has a potential, as forces: weights, springs, the author's own V."""
-    model = kinematics.model
-    gravity = kinematics.vector(model.gravity)
-    for body in model.bodies:
+    yield from weights(kinematics)
+    yield from elastic(kinematics)
+
+
+def weights(kinematics: Kinematics[S]) -> Iterator[Effort[S]]:
+    """The weight of every body."""
+    gravity = kinematics.vector(kinematics.model.gravity)
+    for body in kinematics.model.bodies:
         weight = scale(kinematics.algebra.of(body.mass), gravity)
         yield Effort(body.name, "gravity", weight, kinematics.velocity(body.name))
+
+
+def elastic(kinematics: Kinematics[S]) -> Iterator[Effort[S]]:
+    """What has a potential and is no weight: springs, the author's own V."""
+    model = kinematics.model
     for spring in model.springs:
         if has_potential(spring):
             yield _spring(kinematics, spring)

@@ -13,8 +13,7 @@ from eomgen.mechanics.recursive.lumping import lumped
 from eomgen.mechanics.recursive.records import Tree
 from eomgen.mechanics.recursive.recursion import Loads
 
-LARGEST_TRIED = 12  # coordinates; above, a factorisation that must cost more is not built
-LARGEST_COMPARED = 60  # coordinates; a larger tree is lumped without counting the alternative
+LARGEST_TRIED = 12  # coordinates of a tree for which every combination is built and counted
 
 
 @dataclass(frozen=True)
@@ -65,13 +64,15 @@ METHODS: dict[str, Solver] = {
 def choose(kinematics: Kinematics[Node], tree: Tree) -> Engine:
     """The cheapest of {articulated bodies, composite inertias} x {lumped, not}.
 
+    A large tree is lumped in any case, and a factorisation that must cost more is not built.
+
     Raises:
         SingularMassMatrix: a motion has no inertia whatever the state.
     """
     prepared = _prepared(kinematics)
     applied = loads.of(kinematics, tree)
     variants = [(True, lumped(tree))]
-    if len(tree.order) <= LARGEST_COMPARED:
+    if len(tree.order) <= LARGEST_TRIED:
         variants.append((False, tree))
     best: Engine | None = None
     for is_lumped, variant in variants:

@@ -19,7 +19,7 @@ from eomgen.model import Moment
 
 def of(kinematics: Kinematics[Node], tree: Tree) -> Loads:
     """Everything applied but the weights."""
-    forces = list(generalized(kinematics, list(_without_moments(kinematics, tree))))
+    forces = generalized(kinematics, list(_beside_the_tree(kinematics, tree)))
     wrenches: dict[int, Vector[Node]] = {}
     for moment in kinematics.model.moments:
         if _is_on_tree(tree, moment):
@@ -33,7 +33,7 @@ def generalized_forces(kinematics: Kinematics[Node], tree: Tree) -> tuple[Node, 
     wrenches: list[Vector[Node] | None] = [None] * len(tree.places)
     for number, wrench in applied.wrenches.items():
         wrenches[number] = wrench
-    weights = [e for e in efforts.conservative(kinematics) if e.kind == "gravity"]
+    weights = list(efforts.weights(kinematics))
     parts = (
         applied.forces,
         recursion.gathered(tree, wrenches),
@@ -53,15 +53,14 @@ def generalized(kinematics: Kinematics[Node], applied: Sequence[Effort[Node]]) -
     return pullback(weighted, rates) if weighted else [kinematics.algebra.number(0)] * len(rates)
 
 
-def _without_moments(kinematics: Kinematics[Node], tree: Tree) -> Iterator[Effort[Node]]:
-    on_tree = {m.name for m in kinematics.model.moments if _is_on_tree(tree, m)}
-    for effort in (
-        *efforts.conservative(kinematics),
-        *efforts.dissipative(kinematics),
-        *efforts.nonconservative(kinematics),
-    ):
-        if effort.kind != "gravity" and not (effort.kind == "moment" and effort.name in on_tree):
-            yield effort
+def _beside_the_tree(kinematics: Kinematics[Node], tree: Tree) -> Iterator[Effort[Node]]:
+    """Everything but weights and the moments on frames of the tree."""
+    yield from efforts.elastic(kinematics)
+    yield from efforts.dissipative(kinematics)
+    yield from efforts.forces(kinematics)
+    for moment in kinematics.model.moments:
+        if not _is_on_tree(tree, moment):
+            yield efforts.moment_of(kinematics, moment)
 
 
 def _is_on_tree(tree: Tree, moment: Moment) -> bool:
