@@ -141,7 +141,7 @@ FINDINGS = """\
 * Yaw, pitch and roll that miss the pole by 1e-3 rad overflow at h = 0.01 and are off by 6e-2 rad at
   h = 0.001 (turning with 1 rad/s); the quaternion is off by 2e-11 and 2e-16.
 * In float, smaller steps make the error larger again. The compensated sum removes that where
-  nothing is projected (8e-8 instead of 3e-5 at h = 1e-5), and does not where a projection rounds
+  nothing is projected (2e-7 instead of 1e-5 at h = 1e-5), and does not where a projection rounds
   its own result.
 """
 

@@ -267,8 +267,7 @@ def test_row_19_float_has_a_best_step_and_compensation_takes_it_away():
     errors = best_in_float("minimal", compensated=False)
     assert errors[1e-5] > 3 * min(errors.values())
     kept = best_in_float("minimal", compensated=True)
-    assert kept[1e-5] < 5e-6
-    assert kept[1e-5] <= 2 * min(kept.values())
+    assert kept[1e-5] < 1e-6  # the angle itself is known to 5e-7
     # a projection rounds its result: compensation cannot take that away
     assert best_in_float("nullspace", compensated=True)[1e-5] > 10 * kept[1e-5]
 
