@@ -5,6 +5,7 @@ import sys
 from dataclasses import dataclass
 from functools import cache
 from io import BytesIO, TextIOWrapper
+from pathlib import Path
 
 import pytest
 from commandline import eomgen, together
@@ -14,7 +15,16 @@ from scenes import SHIPPED
 from eomgen.cli import main
 from eomgen.numerics.cache import VARIABLE
 
+HEAVY = frozenset((Path(__file__).parent / "heavy.txt").read_text(encoding="utf-8").split("\n"))
 TARGETS = ("-t", "latex", "-t", "c", "-t", "python", "-t", "text")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Tests that take seconds, one on each line of `heavy.txt`, are among the slow ones."""
+    for item in items:
+        if item.nodeid.removeprefix("tests/") in HEAVY:
+            item.add_marker(pytest.mark.slow)
 
 
 @pytest.fixture(scope="session")
