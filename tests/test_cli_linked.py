@@ -318,3 +318,12 @@ def test_a_refused_scene_ends_the_real_program_with_2():
 def test_every_linked_spec_is_listed(call):
     listed = call("examples").output
     assert all(f"\n{name} " in f"\n{listed}" for name in LINKED)
+
+
+@pytest.mark.slow
+def test_states_in_another_assembly_mode_are_no_difference(call):
+    """The states that are compared depend on the file's name; some of them have another mode."""
+    for name in ("scene", "linkage", "a"):
+        Path(f"{name}.yaml").write_text(text_of("andrews_squeezer"), encoding="utf-8")
+        said = call("check", f"{name}.yaml")
+        assert (said.code, said.errors) == (0, "")

@@ -52,4 +52,4 @@ def test_there_are_two_commands_that_set_up():
     commands = re.findall(r"^python3 -m venv .*$", README, re.MULTILINE)
     assert len(commands) == 2
     assert commands[0].endswith("eomgen generate specs/slider_pendulum.yaml -o out")
-    assert commands[1].endswith("pytest")
+    assert commands[1].endswith("pytest -n auto")

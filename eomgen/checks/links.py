@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
@@ -19,6 +20,7 @@ from eomgen.mechanics import speeds
 from eomgen.mechanics.equations import ConstraintRow, Derivation
 
 TOLERANCE = 1e-10
+SAME_PLACE = 1e-6  # of coordinates in one assembly mode
 
 
 def rows(derivation: Derivation, machine: Machine, samples: Samples) -> float:
@@ -92,9 +94,11 @@ def formulations_agree(
     Raises:
         CheckError: two formulations differ.
     """
-    worst = 0.0
+    worst, compared = 0.0, set()
     for i in range(samples.count):
-        found = {f.name: accelerations(scene, f, samples, i) for f in formulations}
+        own = [f for f in formulations if is_in_mode(scene, f, samples, i)]
+        compared |= {f.name for f in own}
+        found = {f.name: accelerations(scene, f, samples, i) for f in own}
         reference = found.pop("multiplier")
         scale = max(*map(abs, reference.values()), _free_size(scene, samples, i)) or 1.0
         for name, values in found.items():
@@ -105,7 +109,39 @@ def formulations_agree(
                     f"formulation {name} and multiplier differ at an admissible state, relative "
                     f"error {error:.1e}: this is a defect of eomgen, nothing was written"
                 )
+    for formulation in formulations:
+        if formulation.name not in compared:
+            raise CheckError(
+                f"no admissible state was found in the assembly mode of {formulation.name}; "
+                "give `guess` or `range` values nearer to the initial state"
+            )
     return worst
+
+
+def is_in_mode(scene: Linked, formulation: Formulation, samples: Samples, index: int) -> bool:
+    """Whether a formulation has the coordinates of a state: an elimination has one assembly mode.
+
+    An angle may differ by whole turns.
+    """
+    symbols = [c.symbol for c in scene.model.coordinates]
+    bindings = formulation.machine.kinematics.algebra.bindings
+    if not all(s in bindings for s in symbols):
+        return True
+    values = dict(zip(symbols, (column[index] for column in samples.state), strict=False))
+    model = formulation.machine.model
+    rates = [0.0] * len(speeds.symbols(model))
+    at = _at(
+        formulation.machine,
+        samples,
+        index,
+        [*(values[c.symbol] for c in model.coordinates), *rates],
+    )
+    places = at.nodes([bindings[s] for s in symbols])
+    return all(
+        abs(math.remainder(float(place) - values[s], 2 * math.pi)) < SAME_PLACE
+        or abs(float(place) - values[s]) < SAME_PLACE
+        for place, s in zip(places, symbols, strict=True)
+    )
 
 
 def _free_size(scene: Linked, samples: Samples, index: int) -> float:
