@@ -2,6 +2,7 @@
 
 import os
 import sys
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from io import BytesIO, TextIOWrapper
@@ -31,16 +32,23 @@ def pytest_collection_modifyitems(items):
 def generated(tmp_path_factory):
     """A case of `reference` -> folder that the command line wrote: en/ and es/, everything."""
 
+    base = tmp_path_factory.getbasetemp()
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base  # by all processes
+
     @cache
     def folder_of(case):
-        folder, wish = tmp_path_factory.mktemp(case), ("--formulation", wanted(case))
-        generate = ("generate", SHIPPED[stem(case)], *TARGETS, *(wish if "-" in case else ()))
-        together(
-            [
-                eomgen(*generate, "-o", folder / "en"),
-                eomgen(*generate, "-o", folder / "es", "--lang", "es"),
-            ]
-        )
+        folder = shared / f"generated-{case}"
+        if not folder.exists():
+            own, wish = tmp_path_factory.mktemp(case), ("--formulation", wanted(case))
+            generate = ("generate", SHIPPED[stem(case)], *TARGETS, *(wish if "-" in case else ()))
+            together(
+                [
+                    eomgen(*generate, "-o", own / "en"),
+                    eomgen(*generate, "-o", own / "es", "--lang", "es"),
+                ]
+            )
+            with suppress(OSError):  # another process was first, with the same bytes
+                own.rename(folder)
         return folder
 
     return folder_of
