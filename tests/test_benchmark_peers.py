@@ -21,6 +21,8 @@ from lab.frames import aligned, plain
 from lab.spec_text import spec
 from lab.trees import cart, limb, massless, skew_arm, walker
 
+pytestmark = pytest.mark.slow  # the peers are large, and not among what developers install
+
 
 def short_walker():
     """The free body and the first joints of one leg: slides, joints without mass, skew offsets."""
