@@ -57,6 +57,11 @@ def checked(wish: Wish, study: Study) -> Wish:
     Raises:
         UsageError: it contradicts itself or the scene.
     """
+    if study.model.guides:
+        raise UsageError(
+            "simulate does not run friction on two-sided constraints: the motion is that of a "
+            "mode, stick or slip, which `evaluate` and the generated code tell"
+        )
     has_contacts = touching_of(study) is not None
     if wish.step is not None and wish.method in adaptive.NAMES:
         raise UsageError(

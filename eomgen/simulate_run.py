@@ -136,6 +136,8 @@ def job(study: Study, request: Request) -> Job:
         CheckError: the start cannot be moved to the constraints.
     """
     wish = checked(_wish(study, request), study)
+    if request.animate and not (study.model.bodies or study.model.points):
+        raise UsageError("--animate: the scene has neither bodies nor points that could be drawn")
     start = start_of(study, request.state, _inputs(request.inputs))
     extra = (compile_places.function(study.compiled),) if request.animate else ()
     made = setup(study, (wanted(wish, study),), start, extra)

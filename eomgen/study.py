@@ -71,8 +71,10 @@ class Study:
 
         That is Lagrange's, of the first kind for a linked set of coordinates.
         """
+        if self.worked is None:
+            return False
         usual = {"lagrange", "lagrange1"} if self.derivation.constraints else {"lagrange"}
-        return self.worked is not None and self.worked.name not in usual
+        return self.worked.name not in usual
 
     @property
     def derivation(self) -> Derivation:
