@@ -13,6 +13,7 @@ from eomgen.chart import draw, make, page, tables
 from eomgen.chart.front import milliseconds, recommended, sentence
 from eomgen.chart.records import Chart, Point, Sweep
 from eomgen.errors import CheckError, UsageError
+from eomgen.simulate_setup import inputs_of
 from eomgen.spec import read
 from eomgen.study import Study
 
@@ -36,13 +37,7 @@ def sweep(wishes: dict[str, Any]) -> Sweep:
 
 def made(study: Study, wanted: Sweep, state: str, inputs: Sequence[str]) -> Chart:
     """The chart; raises as `make.chart`."""
-    given: dict[str, str] = {}
-    for text in inputs:
-        name, equals, value = text.partition("=")
-        if not equals or not name.strip() or name.strip() in given:
-            raise UsageError(f"--input {text!r}: write NAME=VALUE, each name once")
-        given[name.strip()] = value.strip()
-    return make.chart(study, wanted, state, given)
+    return make.chart(study, wanted, state, inputs_of(inputs))
 
 
 def texts(found: Chart) -> dict[str, str]:
@@ -61,11 +56,12 @@ def write(found: Chart, folder: Path, *, force: bool) -> Iterator[Path]:
     Raises:
         UsageError: files are in the way that are no chart of ours, or matplotlib is missing.
     """
-    names = [*texts(found), "chart.svg", "chart.png"]
+    tabled = texts(found)
+    names = [*tabled, "chart.svg", "chart.png"]
     taken = [str(folder / name) for name in names if (folder / name).exists()]
     if taken and not force and not _is_ours(folder):
         raise UsageError(f"{', '.join(taken)}: in the way; choose another folder, or --force")
-    yield from files.write_all(folder, texts(found), force=True)
+    yield from files.write_all(folder, tabled, force=True)
     for kind, data in draw.drawn(found).items():
         path = folder / f"chart.{kind}"
         path.write_bytes(data)

@@ -3,30 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import click
 
 from eomgen import files
-from eomgen.cli_common import decoded, epilog, format_option, reporting, spec_argument, studied
+from eomgen.cli_common import (
+    decoded,
+    epilog,
+    format_option,
+    positive,
+    reporting,
+    spec_argument,
+    studied,
+)
 from eomgen.errors import UsageError
 
 MOST_STEPS = 40
-Command = Callable[..., Any]
 
 
 def _list(context: click.Context, option: click.Parameter, value: str | None) -> tuple[str, ...]:
     """Words between commas, each once."""
     del context, option
     return tuple(dict.fromkeys(w.strip() for w in (value or "").split(",") if w.strip()))
-
-
-def _positive(context: click.Context, option: click.Parameter, value: float | None) -> float | None:
-    if value is not None and not 0 < value < math.inf:
-        raise click.BadParameter(f"{value!r} is not a positive number", context, option)
-    return value
 
 
 def _steps(
@@ -51,13 +51,6 @@ def _steps(
     return found
 
 
-def positive(name: str, default: float | None, words: str) -> Callable[[Command], Command]:
-    """An option whose value is a positive number."""
-    return click.option(
-        name, type=float, default=default, show_default=True, callback=_positive, help=words
-    )
-
-
 @click.command(
     epilog=epilog(
         "eomgen chart four_bar.yaml --out charts",
@@ -65,14 +58,20 @@ def positive(name: str, default: float | None, words: str) -> Callable[[Command]
     )
 )
 @spec_argument
-@positive("--target-error", 1e-4, "Of positions and rates, relative, at every output time.")
-@positive("--budget-us", None, "CPU time of a step that you can spend [us].")
-@positive("--horizon", 10.0, "Length of the runs [s].")
+@positive(
+    "--target-error", default=1e-4, show_default=True,
+    help="Of positions and rates, relative, at every output time.",
+)  # fmt: skip
+@positive("--budget-us", help="CPU time of a step that you can spend [us].")
+@positive("--horizon", default=10.0, show_default=True, help="Length of the runs [s].")
 @click.option("--formulations", callback=_list, help="Such as minimal,nullspace.  [default: all]")
 @click.option("--integrators", callback=_list, help="Such as rk4,verlet.  [default: all]")
 @click.option("--precisions", default="f64,f32", show_default=True, callback=_list)
 @click.option("--steps", callback=_steps, help="LARGEST:SMALLEST:COUNT [s].  [default: by modes]")
-@positive("--seconds", 40.0, "For runs and timing; what takes too long is left out.")
+@positive(
+    "--seconds", default=40.0, show_default=True,
+    help="For runs and timing; what takes too long is left out.",
+)  # fmt: skip
 @click.option("--state", help="JSON file with the start; - is stdin.  [default: `initial`]")
 @click.option("--input", "inputs", multiple=True, metavar="NAME=VALUE", help="Repeatable.")
 @click.option("--out", default="chart", show_default=True, help="Folder.")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,11 +21,24 @@ if TYPE_CHECKING:
 
 FORMATS = click.Choice(["text", "json", "github"])
 LANGUAGES = click.Choice(["en", "es"])
+Command = Callable[..., Any]
 
 
 def epilog(*lines: str) -> str:
     """Examples under a command's help."""
     return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
+
+
+def _positive(context: click.Context, option: click.Parameter, value: float | None) -> float | None:
+    """The number, which must be finite and above zero."""
+    if value is not None and not 0 < value < math.inf:
+        raise click.BadParameter(f"{value!r} is not a positive number", context, option)
+    return value
+
+
+def positive(*names: str, **more: Any) -> Callable[[Command], Command]:
+    """An option whose value is a positive number."""
+    return click.option(*names, type=float, callback=_positive, **more)
 
 
 spec_argument = click.argument("spec", type=str)

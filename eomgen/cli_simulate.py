@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Event
@@ -20,6 +19,7 @@ from eomgen.cli_common import (
     epilog,
     format_option,
     formulation_option,
+    positive,
     reporting,
     spec_argument,
     studied,
@@ -35,20 +35,7 @@ METHODS = (
     "dop853", "lsoda", "radau", "cvode",
 )  # fmt: skip
 INTERRUPTED = 130  # as a shell says it of SIGINT
-Command = Callable[..., Any]
 PATIENCE = 1.0  # seconds before a bar is shown
-
-
-def _positive(context: click.Context, option: click.Parameter, value: float | None) -> float | None:
-    """The number, which must be finite and above zero."""
-    if value is not None and not 0 < value < math.inf:
-        raise click.BadParameter(f"{value!r} is not a positive number", context, option)
-    return value
-
-
-def positive(*names: str, **more: Any) -> Callable[[Command], Command]:
-    """An option whose value is a positive number."""
-    return click.option(*names, type=float, callback=_positive, **more)
 
 
 FILE = click.Path(dir_okay=False, path_type=Path)

@@ -17,7 +17,7 @@ from eomgen.render import animation, plot
 from eomgen.simulate import Verdict
 from eomgen.simulate_method import AUTO, Choice, Wish, checked, choose, wanted
 from eomgen.simulate_report import ENERGY_TOLERANCE
-from eomgen.simulate_setup import Setup, setup, start_of
+from eomgen.simulate_setup import Setup, inputs_of, setup, start_of
 from eomgen.study import Study
 
 FRAMES = 300  # of an animation
@@ -138,7 +138,7 @@ def job(study: Study, request: Request) -> Job:
     wish = checked(_wish(study, request), study)
     if request.animate and not (study.model.bodies or study.model.points):
         raise UsageError("--animate: the scene has neither bodies nor points that could be drawn")
-    start = start_of(study, request.state, _inputs(request.inputs))
+    start = start_of(study, request.state, inputs_of(request.inputs))
     extra = (compile_places.function(study.compiled),) if request.animate else ()
     made = setup(study, (wanted(wish, study),), start, extra)
     choice = choose(wish, made, request.t_end)
@@ -157,18 +157,6 @@ def _wish(study: Study, request: Request) -> Wish:
     if request.method != AUTO or request.step or request.rtol or request.atol or not said.method:
         return Wish(request.method, request.step, request.rtol, request.atol)
     return Wish(said.method, None if said.step is None else float(said.step))
-
-
-def _inputs(texts: tuple[str, ...]) -> dict[str, str]:
-    found: dict[str, str] = {}
-    for text in texts:
-        name, equals, value = text.partition("=")
-        if not equals or not name.strip():
-            raise UsageError(f"--input {text!r}: write NAME=VALUE")
-        if name.strip() in found:
-            raise UsageError(f"--input: {name.strip()} is given twice")
-        found[name.strip()] = value.strip()
-    return found
 
 
 def _known(made: Setup, names: tuple[str, ...]) -> None:

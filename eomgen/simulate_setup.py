@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -143,6 +143,23 @@ def _event(text: str) -> tuple[str, str]:
 def is_separable(study: Study) -> bool:
     """Whether Verlet's method is symplectic."""
     return not separable.obstacle(study.compiled)
+
+
+def inputs_of(texts: Sequence[str]) -> dict[str, str]:
+    """The values of `--input NAME=VALUE`, as they were written.
+
+    Raises:
+        UsageError: a text has another form, or a name comes twice.
+    """
+    found: dict[str, str] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not name.strip():
+            raise UsageError(f"--input {text!r}: write NAME=VALUE")
+        if name.strip() in found:
+            raise UsageError(f"--input: {name.strip()} is given twice")
+        found[name.strip()] = value.strip()
+    return found
 
 
 def start_of(study: Study, text: str, inputs: Mapping[str, str]) -> Start:

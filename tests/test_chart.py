@@ -25,7 +25,7 @@ def point(cost, error, **more):
     step, status, name, precision = (more.pop(k) for k in ("step", "status", "name", "precision"))
     given = {"formulation": "minimal", "order": 4, "states": 4, "projects": False} | more
     run = Combination(integrator=name, precision=precision, step=step, **given)
-    return Point(run, status, Errors(error, error / 2, NAN, 0.0, 0.0), cost)
+    return Point(run, status, Errors(error, error / 2, 0.0, 0.0), cost)
 
 
 def chart_of(points, **sweep):

@@ -13,9 +13,9 @@ from eomgen.chart.runs import Plan
 from eomgen.chart.variants import Variant
 from eomgen.errors import UsageError
 from eomgen.integrators.methods import METHODS
-from eomgen.integrators.steps import Steps
 from eomgen.study import Study
 
+UNOFFERED = "M is not constant, or forces depend on rates: not symplectic"
 FOR_RUNS, FOR_TIMES = 0.5, 0.5  # of the seconds that the chart may take
 
 
@@ -88,9 +88,4 @@ def _left_out(found: tuple[Variant, ...], sweep: Sweep) -> Iterator[str]:
             if name not in {m.name for m in variant.methods}
         ]
         if missing:
-            yield f"{variant.name}: not offered {', '.join(missing)} ({_why(variant.setup.steps)})"
-
-
-def _why(steps: Steps) -> str:
-    del steps
-    return "M is not constant, or forces depend on rates: not symplectic"
+            yield f"{variant.name}: not offered {', '.join(missing)} ({UNOFFERED})"

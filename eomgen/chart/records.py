@@ -57,7 +57,6 @@ class Errors:
 
     positions: float
     rates: float
-    outputs: float
     energy: float
     constraint: float  # of the residuals, over the size of the coordinates
 

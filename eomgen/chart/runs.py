@@ -107,7 +107,7 @@ def made(plan: Plan, reference: Motion, known: float) -> Point:
 def missing(plan: Plan) -> Point:
     """The point of a run that was not made."""
     none = float("nan")
-    errors = Errors(none, none, none, none, none)
+    errors = Errors(none, none, none, none)
     return Point(plan.run, "timeout", errors, plan.operations / plan.run.step)
 
 
@@ -126,7 +126,6 @@ def measured(plan: Plan, found: Rows, reference: Motion) -> Errors:
     return Errors(
         positions=_largest(np.abs(places - reference.places[rows]) / scale_q),
         rates=_largest(np.abs(rates - reference.rates[rows]) / scale_v),
-        outputs=float("nan"),
         energy=_energy(variant, found),
         constraint=_constraint(variant, found, places),
     )

@@ -20,7 +20,13 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def row(chart: Chart, point: Point) -> dict[str, Any]:
+def rows(chart: Chart) -> list[dict[str, Any]]:
+    """All points by column."""
+    best = front(chart.points)
+    return [row(point, is_on_front=point in best) for point in chart.points]
+
+
+def row(point: Point, *, is_on_front: bool) -> dict[str, Any]:
     """A point by column; a number that is none is None."""
     errors = {k: v if isfinite(v) else None for k, v in asdict(point.errors).items()}
     found = {
@@ -28,7 +34,7 @@ def row(chart: Chart, point: Point) -> dict[str, Any]:
         **errors,
         "status": point.status,
         "resolved": point.resolved,
-        "front": point in front(chart.points),
+        "front": is_on_front,
         "operations": point.operations,
         "seconds": point.seconds,
         "median": point.median,
@@ -45,7 +51,7 @@ def series(point: Point) -> str:
 
 def as_json(chart: Chart) -> str:
     """Everything."""
-    best = recommended(chart)
+    best, found = recommended(chart), rows(chart)
     return json.dumps(
         {
             "schema": SCHEMA,
@@ -56,10 +62,10 @@ def as_json(chart: Chart) -> str:
             "horizon": chart.horizon,
             "reference": asdict(chart.reference),
             "recommendation": sentence(chart),
-            "recommended": None if best is None else row(chart, best),
+            "recommended": None if best is None else found[chart.points.index(best)],
             "remarks": list(chart.remarks),
             "machine": chart.machine,
-            "runs": [row(chart, p) for p in chart.points],
+            "runs": found,
         },
         indent=1,
     )
@@ -70,8 +76,7 @@ def as_csv(chart: Chart) -> str:
     stream = io.StringIO()
     writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
     writer.writeheader()
-    for point in chart.points:
-        values = row(chart, point)
+    for values in rows(chart):
         writer.writerow({k: "" if v is None else _cell(v) for k, v in values.items()})
     return stream.getvalue()
 
