@@ -52,6 +52,11 @@ def functions(scene: Scene, methods: Sequence[Method]) -> tuple[Function, ...]:
         UsageError: a method is not what it should be for this scene.
     """
     kinds = {m.kind for m in methods}
+    for guide in scene.rows.model.guides if methods else ():
+        raise UsageError(
+            f"--integrator: {guide.name} has friction on both sides: the motion is that of a mode, "
+            "stick or slip, so that a step needs events; call the functions of the modes instead"
+        )
     for method in methods:
         if obstacle := OBSTACLES.get(method.kind, _none)(scene.machine):
             raise UsageError(

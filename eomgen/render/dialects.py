@@ -80,7 +80,9 @@ PYTHON = Dialect(
         **{o: f"np.arc{o[1:]}" for o in ("asin", "acos", "atan", "atan2")},
         "min": "np.fmin", "max": "np.fmax",
     },
-    reserved=frozenset(keyword.kwlist) | {"np", "t", "state", "inputs", "parameters", "model"},
+    reserved=frozenset(keyword.kwlist)
+    | {"np", "t", "state", "inputs", "parameters", "model"}
+    | {"l", "O", "I"},  # hard to tell from 1 and 0: linters reject them (E741)
     reserved_members=frozenset(),  # keys of a dictionary
 )  # fmt: skip
 PLAIN = Dialect(  # for comments
