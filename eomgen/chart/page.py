@@ -12,7 +12,7 @@ from eomgen.render.latex_text import escaped
 from eomgen.render.templating import environment, fill
 
 CSV = "chart.csv"
-COLUMNS = ("positions", "rates", "energy", "constraint")  # beside `PANELS`
+COLUMNS = ("positions", "rates", "outputs", "energy", "constraint")  # beside `PANELS`
 MARKS = {
     "semi-euler": "triangle*, mark options={rotate=180}", "verlet": "triangle*", "rk4": "*",
     "dopri5": "square*", "rosenbrock2": "diamond*", "midpoint": "pentagon*",
