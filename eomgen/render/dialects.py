@@ -57,8 +57,9 @@ _C_CALLS = {operator: name.upper() for operator, name in C_FUNCTIONS.items()} | 
 # statements of about four operations each: beyond, gcc -O2 takes more than linear time
 LONGEST = 1000
 _OWN = _words("""
-t state accelerations inputs p m work result waves lane bad REAL EPSILON PIVOT LANES NOT_ABOVE ALIGNED SIDE_BY_SIDE
-APART INLINED WAVE_RANGE SIGN_BIT bits bits_of real_of reduced sine_and_cosine sine cosine
+t state accelerations inputs p m work result waves lane bad REAL EPSILON PIVOT LANES NOT_ABOVE
+ALIGNED SIDE_BY_SIDE APART INLINED WAVE_RANGE SIGN_BIT bits bits_of real_of reduced
+sine_and_cosine sine cosine
 lane_waves lane_sine lane_cosine gather scatter pick
 """)
 C = Dialect(
