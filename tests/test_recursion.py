@@ -98,7 +98,7 @@ def test_the_engine_takes_the_cheapest_and_says_which(name):
     prepared = 0
     for p in machine.model.parameters:
         prepared |= machine.kinematics.algebra.of(p.symbol).leaves
-    assert cost.operations(chosen.accelerations, prepared) == chosen.operations
+    assert cost.of(chosen.accelerations, prepared) == chosen.cost
     for tree in (machine.tree, lumped(machine.tree)):
         applied = loads.of(machine.kinematics, tree)
         for method in engine.METHODS.values():
