@@ -24,7 +24,9 @@ def jacobian(results: Sequence[Node], variables: Sequence[Node]) -> Rows:
     rules = _guarded(results)
     forward = _forward(results, variables, rules)
     reverse = [gradient(node, variables, rules) for node in results]
-    return min((forward, reverse), key=lambda rows: operations(entry for row in rows for entry in row))
+    return min(
+        (forward, reverse), key=lambda rows: operations(entry for row in rows for entry in row)
+    )
 
 
 def _forward(results: Sequence[Node], variables: Sequence[Node], rules: Rules) -> Rows:

@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from eomgen.algebra import ldl
-from eomgen.algebra.graph import Node
 from eomgen.algebra.cost import operations
+from eomgen.algebra.graph import Node
 from eomgen.algebra.jacobian import Rows, jacobian, substituted
 from eomgen.algebra.ldl import Pivots
 from eomgen.compile import LARGEST_UNROLLED
@@ -44,7 +44,9 @@ def accelerations(motion: Motion, variables: Sequence[Node]) -> tuple[Rows, Pivo
         return implicit
     solution, pivots = motion.machine.solution
     direct = (jacobian(solution, variables), pivots)
-    return min(implicit, direct, key=lambda pair: operations(entry for row in pair[0] for entry in row))
+    return min(
+        implicit, direct, key=lambda pair: operations(entry for row in pair[0] for entry in row)
+    )
 
 
 def _in_a_loop(motion: Motion) -> bool:

@@ -13,7 +13,7 @@ from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.recursive import articulated, loads, recursion, rods
 from eomgen.mechanics.recursive.formulas import Clock
 from eomgen.mechanics.recursive.lumping import lumped
-from eomgen.mechanics.recursive.records import GROUND, Tree
+from eomgen.mechanics.recursive.records import GROUND, Solution, Tree
 from eomgen.mechanics.recursive.recursion import Loads
 
 LARGEST_TRIED = 12  # coordinates of a tree for which every combination is built and counted
@@ -38,7 +38,6 @@ class Engine:
         return f"{self.method}{how}, {self.cost.operations} operations, {chain}"
 
 
-Solution = tuple[tuple[Node, ...], ldl.Pivots]
 Solver = Callable[[Kinematics[Node], Tree, Loads], Solution | None]  # None: not for such a tree
 
 

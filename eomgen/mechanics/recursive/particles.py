@@ -133,7 +133,9 @@ def _put(draft: _Draft, number: int) -> bool:
     """Add what a place carries; False where it is no particle."""
     place, zero = draft.tree.places[number], draft.short.zero
     base, carried = draft.at[place.base]
-    if not isinstance(place.kind, Point) or not all(_is_parallel(s, len(carried)) for s in place.steps):
+    if not isinstance(place.kind, Point) or not all(
+        _is_parallel(s, len(carried)) for s in place.steps
+    ):
         return False
     drift = _drift(place, draft.tree.places[place.base].kind.size, zero)
     mass = zero if place.body is None else place.body.mass
@@ -148,7 +150,9 @@ def _put(draft: _Draft, number: int) -> bool:
     ways = _ways(draft, place)
     if ways is None:
         return False
-    particle = Particle(base, mass, ways, _parts(draft, place, drift), carried, (zero,) * len(drift))
+    particle = Particle(
+        base, mass, ways, _parts(draft, place, drift), carried, (zero,) * len(drift)
+    )
     draft.found.append(particle)
     draft.at[number] = len(draft.found) - 1, (zero,) * len(drift)
     return not particle.is_hung or len(ways) == len(carried) - 1
@@ -199,7 +203,9 @@ def _parts(draft: _Draft, place: Place, drift: Vector[Node]) -> Drift:
 
 
 def _quadratic(
-    clock: Clock, columns: Mapping[int, Vector[Node]], movers: Sequence[tuple[int, object, Node, Node]]
+    clock: Clock,
+    columns: Mapping[int, Vector[Node]],
+    movers: Sequence[tuple[int, object, Node, Node]],
 ) -> list[tuple[Node, Vector[Node]]]:
     parts = []
     for i, (number, _, _, speed) in enumerate(movers):

@@ -26,12 +26,11 @@ from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.recursive import particles
 from eomgen.mechanics.recursive.formulas import Clock
 from eomgen.mechanics.recursive.particles import FIXED, Particle, Way
-from eomgen.mechanics.recursive.records import Tree
+from eomgen.mechanics.recursive.records import Solution, Tree
 from eomgen.mechanics.recursive.recursion import Loads
 from eomgen.mechanics.recursive.short import Short
 from eomgen.mechanics.vectors import Vector, add, dot, scale
 
-Solution = tuple[tuple[Node, ...], ldl.Pivots]
 Terms = list[tuple[Node, Node]]  # (coefficient, value) of a sum
 Values = Mapping[int, Node]
 
@@ -112,7 +111,7 @@ class Scene:
 
 
 def _guided(scene: Scene, i: int, way: Way, known: tuple[Values, Values]) -> Node:
-    """A coordinate of what moves against the ground: m S' S q'' = S' (f - m (a of the ground + drift))."""
+    """Against the ground: S' S q'' = S' (f / m - a of the ground - drift)."""
     particle, (tensions, _) = scene.particles[i], known
     terms = _pulled(scene, i, way.direction, tensions)
     terms.append((scene.lightness[i], dot(way.direction, scene.reactions[i])))
@@ -121,7 +120,7 @@ def _guided(scene: Scene, i: int, way: Way, known: tuple[Values, Values]) -> Nod
 
 
 def _led(scene: Scene, i: int, way: Way, known: tuple[Values, Values]) -> Node:
-    """A coordinate of what moves against its base: S' S q'' = S' (a - a of the base - drift)."""
+    """Against another particle: S' S q'' = S' (a - a of the base - drift)."""
     particle, (tensions, _) = scene.particles[i], known
     # the own link is at right angles to S
     terms = _pulled(scene, i, way.direction, tensions, but=i)
@@ -208,7 +207,7 @@ def _tensions(scene: Scene) -> tuple[dict[int, Node], ldl.Pivots]:
 def _check(
     rows: list[list[Node]], pivots: list[tuple[Node, Node]], row: int, pivot: Node, scale: Node
 ) -> None:
-    """Remember the last pivot of each chain: it depends on all others, which are greater than 1/m_b."""
+    """Remember the last pivot of each chain, which holds all others: these are above 1/m_b."""
     if all(entry is entry.graph.zero for entry in rows[row][:row]):
         ldl.check_pivot(pivots, row, pivot, scale)
 

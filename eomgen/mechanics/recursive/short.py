@@ -12,7 +12,7 @@ import sympy as sp
 from eomgen.algebra import closed, normal
 from eomgen.algebra.arithmetic import evaluate, over
 from eomgen.algebra.closed import ClosedForm
-from eomgen.algebra.graph import Exact, Node, below, multiply, term
+from eomgen.algebra.graph import Exact, Node, below, multiply
 from eomgen.algebra.scalar import Algebra
 from eomgen.mechanics.vectors import Vector
 
@@ -54,7 +54,7 @@ class Short:
             (form,) = evaluate([value], given, over(ring))
         except normal.TooLarge:
             return value  # as it stands it is right too
-        back = closed.Evaluation(leaves, self.algebra.number, self.algebra.apply).of(form)
+        back: Node = closed.Evaluation(leaves, self.algebra.number, self.algebra.apply).of(form)
         if self.is_constant(back):
             return back
         waves = {a for a in below([back]) if a.operator in ("sin", "cos")}
@@ -73,25 +73,24 @@ def common_factor(vector: Sequence[Node]) -> tuple[Node, Vector[Node]]:
         signs.append(negative)
         split.append(_factors(entry.operands[0] if negative else entry))
     present = [parts for entry, parts in zip(vector, split, strict=True) if entry is not zero]
-    number = present[0][0] if len({abs(c) for c, _ in present}) == 1 else 1
+    number = present[0][0] if len({abs(c) for c, _ in present}) == 1 else Fraction(1)
     shared = _shared([factors for _, factors in present])
     direction = []
     for entry, negative, (c, factors) in zip(vector, signs, split, strict=True):
-        rest = zero if entry is zero else _product(zero, Fraction(c) / number, _without(factors, shared))
+        rest = zero if entry is zero else _product(zero, c / number, _without(factors, shared))
         direction.append(-rest if negative else rest)
     return _product(zero, number, shared), tuple(direction)
 
 
-def _factors(value: Node) -> tuple[Exact, list[Node]]:
+def _factors(value: Node) -> tuple[Fraction, list[Node]]:
     """A number and the other factors of a product."""
-    if value.operator == "number":
-        return value.datum, []
-    coefficient, rest = term(value)
-    factors, stack = [], [rest]
+    coefficient, factors, stack = Fraction(1), [], [value]
     while stack:
         factor = stack.pop()
         if factor.operator == "multiply":
             stack.extend(reversed(factor.operands))
+        elif factor.operator == "number":
+            coefficient *= factor.datum
         else:
             factors.append(factor)
     return coefficient, factors
