@@ -70,6 +70,11 @@ class Body:
     results: tuple[tuple[int, str], ...]  # where each goes, and what
     uses: tuple[str, ...]  # which of `READ` and `WORK` are read
 
+    @property
+    def can_fail(self) -> bool:
+        """Whether a pivot is checked."""
+        return any(step.kind in ("require", "solve") for step in self.steps)
+
 
 @dataclass(frozen=True)
 class Wave:
