@@ -7,6 +7,7 @@ from typing import Any
 import sympy as sp
 
 from eomgen.algebra.specialise import specialised, with_values
+from eomgen.algebra.specialise_alike import side_by_side
 from eomgen.program import OPERATORS, Expression, Program, Read, Solve, Value, Variable
 from eomgen.render.code import Names, expression, number
 from eomgen.render.dialects import C_FUNCTIONS, PLAIN, PYTHON, C, Dialect
@@ -68,7 +69,10 @@ def coded(program: Program, style: Style = Style()) -> Code:
         UsageError, SingularMassMatrix: with the folded values something is not defined.
     """
     folded = with_values(program) if style.fold else frozenset[str]()
-    return Code(specialised(program, folded), style)
+    if style.batch:
+        # its lanes are the states
+        return Code(specialised(program, folded), style)
+    return Code(side_by_side(program, folded, style.longest), style)
 
 
 def _code(subject: Program | Code) -> Code:
