@@ -26,6 +26,7 @@ from eomgen.program import (
 )
 from eomgen.render.code import Names, expression
 from eomgen.render.dialects import Dialect
+from eomgen.render.grouped import apart, groups
 from eomgen.render.lowered import atoms, expressions, lower, operations
 from eomgen.render.names import escaped, prefix
 from eomgen.render.parts import Part, divided
@@ -147,9 +148,14 @@ class Routine:
 
 def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
     """A function of the program as text, every argument that it reads in a variable of its own."""
-    lowered = lower(function if dialect.loops else unrolled(function))
+    whole_function = lower(function if dialect.loops else unrolled(function))
+    lowered, direct = apart(whole_function, groups(program))
     found = _survey(expressions(lowered))
-    text = _Text(dialect, _names(lowered, found, program, dialect), _labels(program))
+    if direct and "constants" not in found.used:
+        found = replace(found, used=(*found.used, "constants"))
+    names = _names(lowered, found, program, dialect)
+    names |= {Value(name): f"m->c{first}[{LANE}]" for name, first in direct.items()}
+    text = _Text(dialect, names, _labels(program))
     cut = divided(lowered, dialect.longest)
     whole = Part(lowered.statements, (), tuple((e, i) for i, e in enumerate(lowered.results)))
     return Routine(
@@ -162,7 +168,7 @@ def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
         0 if cut is None else cut.slots,
         len(lowered.results),
         frozenset(operations(lowered)),
-        _counted(unrolled(lowered)),
+        _counted(unrolled(whole_function)),
         function.arguments,
         found.used,
         _checks_pivots(function),
