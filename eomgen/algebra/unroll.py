@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from eomgen.program import Alike, Apply, Assign, Expression, Function, Value, in_lane
+from eomgen.program import Alike, Apply, Assign, Expression, Function, Statement, Value, in_lane
 
 
 def unrolled(function: Function) -> Function:
@@ -13,7 +13,7 @@ def unrolled(function: Function) -> Function:
     if not any(isinstance(s, Alike) for s in function.statements):
         return function
     laned: set[str] = set()
-    statements = []
+    statements: list[Statement] = []
     for statement in function.statements:
         if isinstance(statement, Alike):
             laned.update(s.name for s in statement.statements)

@@ -154,4 +154,3 @@ class _Body:
             self.given[entries] = f"v{self.draft.names}"
             self.draft.names += 1
         return Value(self.given[entries])
-
