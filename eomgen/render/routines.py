@@ -144,6 +144,7 @@ class Routine:
     takes: tuple[str, ...]  # which of `ARGUMENTS` a caller passes
     uses: tuple[str, ...]  # which of these are read
     can_fail: bool  # a pivot is checked
+    base: str = ""  # whose parts it shares; their results follow those of the body
 
 
 def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
@@ -158,12 +159,16 @@ def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
     text = _Text(dialect, names, _labels(program))
     cut = divided(lowered, dialect.longest)
     whole = Part(lowered.statements, (), tuple((e, i) for i, e in enumerate(lowered.results)))
+    base = None if cut is None else _base(function, program)
+    lead = replace(whole, statements=(), stores=whole.stores[: _ahead(function, base)])
     return Routine(
         lowered.name,
         lowered.about,
         lowered.shape,
-        text.body(whole, found) if cut is None else Body((), (), (), found.used),
-        () if cut is None else tuple(text.body(part, _survey_of(part)) for part in cut.parts),
+        text.body(whole, found)
+        if cut is None
+        else replace(text.body(lead, _survey_of(lead)), uses=found.used),
+        () if cut is None or base else tuple(text.body(p, _survey_of(p)) for p in cut.parts),
         tuple(map(text.lanes, (whole,) if cut is None else cut.parts)) if dialect.lanes else (),
         0 if cut is None else cut.slots,
         len(lowered.results),
@@ -172,7 +177,29 @@ def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
         function.arguments,
         found.used,
         _checks_pivots(function),
+        "" if base is None else base.name,
     )
+
+
+def _base(function: Function, program: Program) -> Function | None:
+    """An earlier function of the same statements whose results come last, behind arguments."""
+    for other in program.functions:
+        if other.name == function.name:
+            return None
+        ahead = _ahead(function, other)
+        if (
+            other.arguments == function.arguments
+            and other.results == function.results[ahead:]
+            and all(isinstance(e, Read) for e in function.results[:ahead])
+            and other.statements == function.statements
+        ):
+            return other
+    return None
+
+
+def _ahead(function: Function, base: Function | None) -> int:
+    """How many results stand before those of the base."""
+    return 0 if base is None else max(0, len(function.results) - len(base.results))
 
 
 @dataclass(frozen=True)
