@@ -17,9 +17,9 @@ sys.path[:0] = [str(TESTS), str(TESTS / "stability")]
 
 import laboratory as lab  # noqa: E402
 import measures  # noqa: E402
-from theory import largest_step  # noqa: E402
 
 from eomgen.numerics.records import UNPROJECTED  # noqa: E402
+from eomgen.stability.theory import largest_step  # noqa: E402
 
 
 def limits() -> list[str]:

@@ -39,6 +39,7 @@ from eomgen.cli_common import (
 from eomgen.cli_import import import_robot
 from eomgen.cli_regressor import regressor
 from eomgen.cli_simulate import simulate
+from eomgen.cli_stability import stability
 from eomgen.errors import EomgenError, UsageError
 from eomgen.wanted import Wanted, wanted
 
@@ -314,6 +315,7 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
 commands.add_command(import_robot)
 commands.add_command(simulate)
 commands.add_command(chart)
+commands.add_command(stability)
 
 
 def main() -> NoReturn:

@@ -115,14 +115,15 @@ def stepped(text, formulation="auto", baumgarte=F(0), *, bare=False, compensated
     """Every method over a scene, Verlet too where it is not symplectic; bare: not projected."""
     found = derived(text, formulation, baumgarte)
     scene = stepping.scene_of(found)
-    methods = [m for m in METHODS.values() if m.kind != "verlet"]
+    methods = [m for m in METHODS.values() if compile_steps.offers(scene, m)]
     extra = (*compile_steps.functions(scene, methods), *compile_flow.functions(scene.machine))
     program = stepping.extended(found.program, extra)
     if bare:
         kept = tuple(f for f in program.functions if f.name not in PROJECTIONS)
         program = replace(program, functions=kept)
     has_rates = all(s.name.endswith("'") for s in program.speeds)
-    wanted = [m for m in EVERY.values() if has_rates or m.kind != "verlet"]
+    offered = {m.kind for m in methods} | ({"verlet"} if has_rates else set())
+    wanted = [m for m in EVERY.values() if m.kind in offered]
     return Steps(program, tuple(wanted), compensated)
 
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from laboratory import EVERY, OSCILLATOR, amplitude, engine, failed, run, start, stepped
 from measures import ENERGY, LIMITS, ZETAS, energy_change, measured_limit, semi_euler_implicit
-from theory import growth, largest_step
+
+from eomgen.stability.theory import growth, largest_step
 
 
 def oscillator(**parameters):

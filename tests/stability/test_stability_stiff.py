@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from laboratory import METHODS, SHIPPED, engine, failed, run, start, stepped
 from scipy.integrate import solve_ivp
-from theory import largest_step
+
+from eomgen.stability.theory import largest_step
 
 
 def governor():
