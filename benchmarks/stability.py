@@ -19,7 +19,7 @@ import laboratory as lab  # noqa: E402
 import measures  # noqa: E402
 
 from eomgen.numerics.records import UNPROJECTED  # noqa: E402
-from eomgen.stability.theory import largest_step  # noqa: E402
+from eomgen.stability.theory import Linear, largest_step  # noqa: E402
 
 
 def limits() -> list[str]:
@@ -38,7 +38,7 @@ def _limit(method: str, zeta: float) -> str:
     if method not in lab.EVERY:
         return f"{measures.measured_limit(method, zeta):.3f}"
     matrix = np.array([[0.0, 1.0], [-1.0, -2 * zeta]])
-    theory = largest_step(lab.EVERY[method], matrix, 1)
+    theory = largest_step(lab.EVERY[method], Linear(matrix, 1))
     if theory == inf:
         return "none"
     return f"{measures.measured_limit(method, zeta):.3f} / {theory:.3f}"

@@ -33,8 +33,10 @@ from eomgen.cli_common import (
     print_files,
     reporting,
     spec_argument,
+    stability_inputs,
     studied,
     templates_option,
+    with_stability_option,
 )
 from eomgen.cli_import import import_robot
 from eomgen.cli_regressor import regressor
@@ -112,6 +114,8 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 @code_options
 @integrator_option
 @compensated_option
+@with_stability_option
+@click.option("--input", "inputs", multiple=True, metavar="NAME=VALUE", help="With stability.")
 @functions_option
 @list_functions_option
 @format_option
@@ -130,7 +134,7 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
         if wishes["method"] and not notes:
             raise UsageError("--method is how the notes derive: add -t latex or -t text")
         choice = replace(choice, notes=notes, method=wishes["method"])
-        style = code_style(targets, wishes)
+        style, stable = code_style(targets, wishes), stability_inputs(targets, wishes)
     study = studied(spec, format_, choice)
     wish = Wish(
         targets,
@@ -141,8 +145,10 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
         integrators,
         wishes["compensated"],
         style,
+        stable,
     )
-    made = rendered(study, wish)
+    with reporting(format_, files.shown(spec)):
+        made = rendered(study, wish)
     if output == files.STANDARD:
         print_files(made)
         return

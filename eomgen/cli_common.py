@@ -83,6 +83,26 @@ integrator_option = click.option(
 integrators_option = click.option(
     "--integrators", callback=listed, help="Such as rk4,verlet.  [default: all]"
 )
+with_stability_option = click.option(
+    "--with-stability",
+    is_flag=True,
+    help="Limits of fixed steps in the C header, as `eomgen stability` finds them.",
+)
+
+
+def stability_inputs(targets: Sequence[str], wishes: Mapping[str, Any]) -> tuple[str, ...] | None:
+    """The inputs for which stability is written into the header; None: it is not.
+
+    Raises:
+        UsageError: it is asked for, but no C is written; inputs are given, but not asked for.
+    """
+    if wishes["inputs"] and not wishes["with_stability"]:
+        raise UsageError("--input is a value for --with-stability; add it")
+    if wishes["with_stability"] and "c" not in targets:
+        raise UsageError("--with-stability is about C, which is not written; add -t c")
+    return wishes["inputs"] if wishes["with_stability"] else None
+
+
 compensated_option = click.option(
     "--compensated", is_flag=True, help="Integrators keep what rounding loses: for float."
 )

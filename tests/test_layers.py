@@ -80,7 +80,7 @@ ALLOWED: dict[str, set[str]] = {
     "chart": RECORDS
     | {"compile_steps", "formulation", "integrators", "numerics", "render", "simulate"}
     | {"simulate_method", "simulate_setup", "stepping", "study", "wanted"},
-    "charting": RECORDS | {"chart", "files", "spec", "study"},
+    "charting": RECORDS | {"chart", "files", "simulate_setup", "spec", "study"},
     "cli_chart": {"charting", "cli_common", "errors", "files"},
     "render": RECORDS | {"algebra", "latex_name", "mechanics", "integrators"},
     "numerics": RECORDS | {"render", "interpreter", "integrators"},
@@ -92,6 +92,7 @@ ALLOWED: dict[str, set[str]] = {
     "output_links": {"analysis", "compile", "formulation", "mechanics", "render"},
     "outputs": RECORDS
     | {"checks", "functions", "integrators", "output_links", "analysis", "mechanics", "render"}
+    | {"stability"}
     | {"spec", "stepping", "study"},
     "cli_common": {"errors", "files", "functions", "outputs", "render", "spec", "study", "wanted"},
     "cli_regressor": {"cli_common", "files", "functions", "study", "wanted"},

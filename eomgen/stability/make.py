@@ -133,8 +133,7 @@ def _accurate(mode: Mode | None, horizon: float) -> float | None:
 
 def _limit(made: Setup, method: Method, looked: Looked) -> Limit:
     """The smallest prediction of all places, of equals at rest; by the C there, and in a run."""
-    count = len(made.steps.program.coordinates)
-    found = [(theory.largest_step(method, p.matrix, count), p) for p in looked.places]
+    found = [(theory.largest_step(method, p.motion), p) for p in looked.places]
     predicted, place = min(found, key=lambda pair: (pair[0], pair[1].kind != REST))
     if not made.is_compiled:
         return Limit(method.name, predicted, place.name, None, None)

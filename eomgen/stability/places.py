@@ -17,9 +17,10 @@ from eomgen.dimension import NONE
 from eomgen.errors import EomgenError
 from eomgen.mechanics import machine
 from eomgen.model import Coordinate, Model
-from eomgen.numerics.records import Array, Engine, Stopped
+from eomgen.numerics.records import Array, Stopped
 from eomgen.simulate_setup import Setup, Start, start_of
 from eomgen.stability.records import RANGE, REST, START, Place
+from eomgen.stability.theory import Linear
 from eomgen.states import exact
 from eomgen.study import Study
 
@@ -53,24 +54,26 @@ def look(setup: Setup) -> Looked:
 
 
 def _at_start(setup: Setup) -> Looked:
-    place = _place(setup.engine, (THE_START, START), setup.start)
+    place = _place(setup, (THE_START, START), setup.start)
     if place is None:
         return Looked((), (), ("the start: the linearised motion has no value there",))
     return Looked((place,), (THE_START,), ())
 
 
-def _place(engine: Engine, named: tuple[str, str], start: Start) -> Place | None:
+def _place(setup: Setup, named: tuple[str, str], start: Start) -> Place | None:
     """A place, or None where the motion has no value."""
-    time, state = start.time, start.state
+    names = ("state_derivative", "state_jacobian", "damping_jacobian")
+    known = [n for n in names if setup.steps.has(n)]
     try:
-        matrix = engine.function("state_jacobian")(time, state)
-        slope = engine.function("state_derivative")(time, state)
+        found = [setup.engine.function(n)(start.time, start.state) for n in known]
     except Stopped:
         return None
-    if not (np.all(np.isfinite(matrix)) and np.all(np.isfinite(slope))):
+    if not all(np.all(np.isfinite(f)) for f in found):
         return None
+    slope, matrix, *damping = (np.asarray(f, float) for f in found)
+    motion = Linear(matrix, len(setup.steps.program.coordinates), *damping)
     at_rest = bool(np.max(np.abs(slope)) <= RESTING * (1 + np.max(np.abs(matrix))))
-    return Place(*named, time, np.asarray(state, float), np.asarray(matrix, float), at_rest)
+    return Place(*named, start.time, np.asarray(start.state, float), motion, at_rest)
 
 
 def _at_rest(setup: Setup) -> Looked:
@@ -138,7 +141,7 @@ def _placed(
         found = start_of(study, text, {})
     except EomgenError:
         return None
-    return _place(setup.engine, named, found)
+    return _place(setup, named, found)
 
 
 def _in_range(setup: Setup) -> Looked:
@@ -200,7 +203,7 @@ def _sampled(setup: Setup) -> Looked:
     places = []
     for k, state in enumerate(drawn(setup, areas, SAMPLES), 1):
         start = replace(setup.start, state=state)
-        places.append(_place(setup.engine, (f"sampled state {k}", RANGE), start))
+        places.append(_place(setup, (f"sampled state {k}", RANGE), start))
     kept = tuple(p for p in places if p is not None)
     model = setup.study.model
     where = ", ".join(

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import inf
 
 from eomgen.numerics.records import Array
+from eomgen.stability.theory import Linear
 
 START, REST, RANGE = "start", "rest", "range"  # kinds of places
 
@@ -22,14 +23,19 @@ class Wish:
 
 @dataclass(frozen=True)
 class Place:
-    """A state (n,) with the matrix A (n, n) of the linearised motion y' = f + A (y - state)."""
+    """A state (n,) with the linearised motion y' = f + A (y - state)."""
 
     name: str
     kind: str
     time: float
     state: Array
-    matrix: Array
+    motion: Linear
     at_rest: bool  # f = 0
+
+    @property
+    def matrix(self) -> Array:
+        """A (n, n)."""
+        return self.motion.matrix
 
 
 @dataclass(frozen=True)

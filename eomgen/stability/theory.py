@@ -6,6 +6,7 @@ Hairer, Wanner, Solving Ordinary Differential Equations II, sections IV.2 and IV
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from eomgen.integrators.methods import Method
 from eomgen.integrators.tableaus import Rosenbrock, Tableau
 
 Array = np.ndarray[Any, np.dtype[Any]]
-Map = Callable[[Method, Array, int], Array]
+Map = Callable[[Method, Array, int, Array], Array]  # brake: h du'/du of what is implicit
 UNBOUNDED = np.inf
 NEARLY = 1e-9  # an eigenvalue on the unit circle is not beyond it
 TWICE = 1e-6  # a double eigenvalue 1, of a motion without stiffness, is known to half the digits
@@ -42,7 +43,7 @@ def _one(z: Array) -> Array:
     return np.broadcast_to(np.eye(z.shape[-1]), z.shape).copy()
 
 
-def _explicit(method: Method, z: Array, places: int) -> Array:
+def _explicit(method: Method, z: Array, places: int, brake: Array) -> Array:
     assert isinstance(method.table, Tableau)
     one, total = _one(z), np.zeros_like(z)
     for coefficient in polynomial(method.table)[::-1]:
@@ -50,7 +51,7 @@ def _explicit(method: Method, z: Array, places: int) -> Array:
     return total
 
 
-def _semi_euler(method: Method, z: Array, places: int) -> Array:
+def _semi_euler(method: Method, z: Array, places: int, brake: Array) -> Array:
     """u+ = u + h u'(q, u), q+ = q + h q'(q, u+)."""
     faster, further = _one(z), _one(z)
     faster[..., places:, :] += z[..., places:, :]
@@ -59,17 +60,16 @@ def _semi_euler(method: Method, z: Array, places: int) -> Array:
     return made
 
 
-def _semi_euler_damped(method: Method, z: Array, places: int) -> Array:
-    """The same with (1 - h du'/du) (u+ - u) = h u'(q, u): what damps is all that u' has of u."""
+def _semi_euler_damped(method: Method, z: Array, places: int, brake: Array) -> Array:
+    """The same with (1 - brake) (u+ - u) = h u'(q, u)."""
     faster, further = _one(z), _one(z)
-    gain = _one(z)[..., places:, places:] - z[..., places:, places:]
-    faster[..., places:, :] += np.linalg.solve(gain, z[..., places:, :])
+    faster[..., places:, :] += np.linalg.solve(_one(brake) - brake, z[..., places:, :])
     further[..., :places, :] += z[..., :places, :]
     made: Array = further @ faster
     return made
 
 
-def _verlet(method: Method, z: Array, places: int) -> Array:
+def _verlet(method: Method, z: Array, places: int, brake: Array) -> Array:
     """Half a step of q, a step of u, half a step of q."""
     faster, half = _one(z), _one(z)
     faster[..., places:, :] += z[..., places:, :]
@@ -78,7 +78,7 @@ def _verlet(method: Method, z: Array, places: int) -> Array:
     return made
 
 
-def _rosenbrock(method: Method, z: Array, places: int) -> Array:
+def _rosenbrock(method: Method, z: Array, places: int, brake: Array) -> Array:
     """W k1 = z y, W k2 = z (y + k1) - 2 k1, W = 1 - gamma z."""
     assert isinstance(method.table, Rosenbrock)
     one = _one(z)
@@ -89,7 +89,7 @@ def _rosenbrock(method: Method, z: Array, places: int) -> Array:
     return made
 
 
-def _midpoint(method: Method, z: Array, places: int) -> Array:
+def _midpoint(method: Method, z: Array, places: int, brake: Array) -> Array:
     one = _one(z)
     made: Array = np.linalg.solve(one - z / 2, one + z / 2)
     return made
@@ -110,15 +110,11 @@ PARTED = (
 )  # these treat q and u differently: no function of A alone
 
 
-def amplification(method: Method, matrix: Array, places: int, step: float) -> Array:
-    """The map of one step (n, n) of y' = A y; the first `places` of y are coordinates."""
-    return MAPS[method.kind](method, step * np.asarray(matrix), places)
-
-
 def multiplied(method: Method, values: Array, steps: Array) -> Array:
     """What a step (N,) multiplies each mode (m,) by, (N, m): R(h lambda)."""
     z = np.multiply.outer(np.asarray(steps), np.asarray(values, complex))
-    made: Array = MAPS[method.kind](method, z[..., None, None], 0)[..., 0, 0]
+    z = z[..., None, None]
+    made: Array = MAPS[method.kind](method, z, 0, z)[..., 0, 0]
     return made
 
 
@@ -129,18 +125,38 @@ def natural(values: Array, steps: Array) -> Array:
     return made
 
 
-def growth(method: Method, matrix: Array, places: int, step: float) -> float:
+@dataclass(frozen=True)
+class Linear:
+    """y' = A y, whose first `places` are coordinates.
+
+    damping: du'/du by what damps, which a method may take implicitly; None: all of it damps.
+    """
+
+    matrix: Array
+    places: int
+    damping: Array | None = None
+
+    @property
+    def brake(self) -> Array:
+        """What of du'/du is taken implicitly."""
+        own = self.matrix[self.places :, self.places :]
+        return own if self.damping is None else self.damping
+
+
+def growth(method: Method, motion: Linear, step: float) -> float:
     """The largest size of an eigenvalue of a step, motions left out that grow by themselves."""
-    return float(_growths(method, matrix, places, np.array([step]))[0])
+    return float(_growths(method, motion, np.array([step]))[0])
 
 
-def _growths(method: Method, matrix: Array, places: int, steps: Array) -> Array:
+def _growths(method: Method, motion: Linear, steps: Array) -> Array:
     """The growth (N,) of each of some steps (N,)."""
+    matrix = motion.matrix
     if method.kind not in PARTED:
         sizes = np.abs(multiplied(method, _decaying(matrix), steps))
         return np.asarray(np.max(sizes, axis=1, initial=0.0))
-    z = np.multiply.outer(steps, np.asarray(matrix, float))
-    found = np.abs(_left(np.linalg.eigvals(MAPS[method.kind](method, z, places)), steps, matrix))
+    z, brake = np.multiply.outer(steps, matrix), np.multiply.outer(steps, motion.brake)
+    made = MAPS[method.kind](method, z, motion.places, brake)
+    found = np.abs(_left(np.linalg.eigvals(made), steps, matrix))
     return np.asarray(np.max(found, axis=1, initial=0.0))
 
 
@@ -197,12 +213,12 @@ def _decaying(matrix: Array) -> Array:
     return values[values.real <= 0]
 
 
-def largest_step(method: Method, matrix: Array, places: int) -> float:
+def largest_step(method: Method, motion: Linear) -> float:
     """The step [s] from which a motion that should not grow does; infinite if there is none.
 
     Zero: it grows at every step that was tried.
     """
-    rate = fastest(matrix)
+    rate = fastest(motion.matrix)
     if rate == 0:
         return UNBOUNDED
     slack = TWICE if method.kind in PARTED else NEARLY
@@ -210,12 +226,12 @@ def largest_step(method: Method, matrix: Array, places: int) -> float:
     good = 0.0
     for decade in range(start, DECADES):  # mostly the first that is beyond 1 / rate is the last
         steps = np.logspace(decade, decade + 1, SCAN + 1) / rate
-        beyond = np.flatnonzero(_growths(method, matrix, places, steps) > 1 + slack)
+        beyond = np.flatnonzero(_growths(method, motion, steps) > 1 + slack)
         if beyond.size:
             first = int(beyond[0])
             below = float(steps[first - 1]) if first else good
             return below and bisected(
-                lambda h: growth(method, matrix, places, h) > 1 + slack, below, float(steps[first])
+                lambda h: growth(method, motion, h) > 1 + slack, below, float(steps[first])
             )
         good = float(steps[-1])
     return UNBOUNDED
