@@ -279,44 +279,58 @@ def damped_steps(formulation):
     return stepping.of(found, ("semi-euler", "semi-euler-damped"))
 
 
-@pytest.mark.parametrize("formulation", ["multiplier", "nullspace", "minimal"])
-def test_the_implicit_damping_is_that_of_the_equations(formulation):
-    """(M + h D) du - J' l = h (Q - bias), J du = -h gamma, against NumPy with D by differences."""
+def damped(formulation):
+    """The steps, the engine of C, its arguments, and the start, which is at rest."""
     tool("cc")
     steps = damped_steps(formulation)
-    engine = EngineC(steps, Arguments((), tuple(float(p.value) for p in steps.program.parameters)))
-    before, h = start(steps), 0.02
-    before[len(steps.program.coordinates) :] *= 0
-    n, u = len(steps.program.coordinates), len(steps.program.speeds)
+    given = Arguments((), tuple(float(p.value) for p in steps.program.parameters))
+    state = start(steps)
+    state[len(steps.program.coordinates) :] = 0
+    return steps, EngineC(steps, given), given, state
+
+
+def damped_change(engine, state, h):
+    """(M + h D) du - J' l = h (Q - bias), J du = 0 (gamma is zero at rest), D by differences."""
+    u = len(engine.steps.program.speeds)
     names = ("mass_matrix", "bias", "generalized_forces")
-    mass, bias, force = (engine.function(name)(0.0, before) for name in names)
-    moved = [before + np.eye(n + u)[n + i] for i in range(u)]
+    mass, bias, force = (engine.function(name)(0.0, state) for name in names)
+    moved = [state + np.eye(len(state))[i - u] for i in range(u)]
     d = -np.array([engine.function("generalized_forces")(0.0, y) - force for y in moved]).T
     left, right = mass + h * d, h * (force - bias)
-    if formulation == "multiplier":
-        j = engine.function("constraint_jacobian")(0.0, before)
+    if engine.steps.has("multipliers"):
+        j = engine.function("constraint_jacobian")(0.0, state)
         left = np.block([[left, -j.T], [j, np.zeros((len(j),) * 2)]])
-        right = np.concatenate([right, np.zeros(len(j))])  # at rest gamma is zero
-    change = np.linalg.solve(left, right)[:u]
-    jacobian = engine.function("damping_jacobian")(0.0, before)
-    free = engine.function("accelerations")(0.0, before)
-    ours = np.linalg.solve(np.eye(u) - h * jacobian, h * free)
-    np.testing.assert_allclose(ours, change, rtol=1e-10)
-    assert np.abs(ours - h * free).max() > 0.1 * np.abs(change).max()  # it matters
-    given, method = Arguments((), tuple(engine.parameters[:-1])), METHODS["semi-euler-damped"]
+        right = np.concatenate([right, np.zeros(len(j))])
+    return np.linalg.solve(left, right)[:u]
+
+
+FORMULATIONS = ("multiplier", "nullspace", "minimal")
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_the_implicit_damping_is_that_of_the_equations(formulation):
+    steps, engine, _, state = damped(formulation)
+    h, n, u = 0.02, len(steps.program.coordinates), len(steps.program.speeds)
+    change = damped_change(engine, state, h)
+    free = h * engine.function("accelerations")(0.0, state)
+    assert np.abs(change - free).max() > 0.1 * np.abs(change).max()  # it matters
+    bits, after = called(engine, "semi_euler_damped", state, h)
+    assert bits & STOPPED == 0
+    rates = engine.function("state_derivative")(0.0, [*state[:n], *change])[:n]
+    wanted = state + np.concatenate([h * rates, change])
+    wanted, _ = steps_python.admissible(steps, engine.function, h, wanted)
+    np.testing.assert_allclose(after, wanted, atol=1e-12)
+    assert u == len(change)
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_the_damped_step_of_c_is_that_of_numpy(formulation):
+    steps, engine, given, state = damped(formulation)
     both = [
-        integrate.run(e, method, start(steps), Grid(0.0, h, 20))
+        integrate.run(e, METHODS["semi-euler-damped"], state, Grid(0.0, 0.02, 20)).states
         for e in (engine, EnginePython(steps, given))
     ]
-    np.testing.assert_allclose(both[0].states, both[1].states, rtol=1e-11, atol=1e-12)
-    bits, after = called(engine, "semi_euler_damped", before, h)
-    assert bits & STOPPED == 0
-    rates = np.zeros(n + u)
-    rates[:n] = engine.function("state_derivative")(0.0, [*before[:n], *change])[:n]
-    wanted, _ = steps_python.admissible(
-        steps, engine.function, h, before + h * rates + np.array([*[0] * n, *change])
-    )
-    np.testing.assert_allclose(after, wanted, atol=1e-12)
+    np.testing.assert_allclose(both[0], both[1], rtol=1e-11, atol=1e-12)
 
 
 def test_damping_is_no_obstacle_to_the_step_where_it_is_implicit():

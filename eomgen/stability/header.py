@@ -8,7 +8,7 @@ from math import floor, isfinite, log10
 from eomgen.render.code_context import Constant, Remarks
 from eomgen.stability.make import LOSES
 from eomgen.stability.records import Findings
-from eomgen.stability.words import mode, step
+from eomgen.stability.words import step
 
 DIGITS = 2  # of a step, rounded down
 
@@ -23,7 +23,7 @@ def _lines(found: Findings) -> Iterator[str]:
     yield f"formulation {found.formulation}{f', inputs {named}' if named else ''}"
     yield f"looked at {'; '.join(found.looked)}"
     for s in found.spectra:
-        yield f"{s.fastest.place}: fastest {mode(s.fastest)}, slowest {mode(s.slowest)}"
+        yield f"{s.fastest.place}: fastest {s.fastest}, slowest {s.slowest}"
     for x in found.limits:
         yield (
             f"{x.method}: largest step [s] {step(x.predicted)} by eigenvalues ({x.place}), "

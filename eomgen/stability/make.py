@@ -34,7 +34,6 @@ from eomgen.study import Study
 ACCURACY = 1e-4
 BY = "rk4"  # the method of the line I-STEP
 LOSES = 1e-4  # relative error of accelerations in float that is worth a warning
-UNDAMPED = 1e-6
 
 
 def findings(study: Study, wish: Wish) -> Findings:
@@ -133,7 +132,7 @@ def _accurate(mode: Mode | None, horizon: float) -> float | None:
 
 def _limit(made: Setup, method: Method, looked: Looked) -> Limit:
     """The smallest prediction of all places, of equals at rest; by the C there, and in a run."""
-    found = [(theory.largest_step(method, p.motion), p) for p in looked.places]
+    found = [(_predicted(method, p), p) for p in looked.places]
     predicted, place = min(found, key=lambda pair: (pair[0], pair[1].kind != REST))
     if not made.is_compiled:
         return Limit(method.name, predicted, place.name, None, None)
@@ -141,6 +140,11 @@ def _limit(made: Setup, method: Method, looked: Looked) -> Limit:
     starts = [p for p in looked.of(START) if p is not place]
     runs = [measured.largest_step(made, method, p, predicted) for p in starts]
     return Limit(method.name, predicted, place.name, seen, runs[0] if runs else seen)
+
+
+def _predicted(method: Method, place: Place) -> float:
+    """The largest step for ever at rest; in motion, for as long as a run of `measured` is."""
+    return theory.largest_step(method, place.motion, 0.0 if place.at_rest else measured.WEAK)
 
 
 def _warnings(
@@ -184,10 +188,7 @@ def _notes(made: Setup, wish: Wish, modes: Modes, limits: Sequence[Limit]) -> It
     fastest, lasting, accurate = modes
     bound = next((x.predicted for x in limits if x.method == BY), None)
     if fastest is not None and bound is not None:
-        ratio = fastest.damping_ratio
-        damping = "undamped" if abs(ratio) < UNDAMPED else f"damping ratio {ratio:.3g}"
-        said = f"I-STEP: fastest mode {fastest.rate:.3g} rad/s ({damping}): "
-        said += f"{BY} h <= {bound:.3g} s is stable"
+        said = f"I-STEP: fastest mode {fastest}: {BY} h <= {bound:.3g} s is stable"
         if lasting is not None and accurate is not None:
             said += f", <= {accurate:.2g} s for {ACCURACY:g} of {lasting.rate:.3g} rad/s "
             said += f"over {wish.horizon:g} s"

@@ -9,6 +9,7 @@ stays finite and its kinetic energy, in the second half, below `BLOWN` times tha
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import log
 
 import numpy as np
 
@@ -20,7 +21,8 @@ from eomgen.stability import theory
 from eomgen.stability.records import Place
 
 RUN = 2000  # steps
-BLOWN = 100.0
+BLOWN = 100.0  # times the kinetic energy
+WEAK = log(BLOWN) / 2 / RUN  # growth of a step with which a run does not get so far
 SLACK = 1e-6  # beyond the unit circle: below it lies the rounding of differences
 DRIFT = 1e-3  # a double eigenvalue 1, of motions of constant rate, is known to half the digits
 NUDGE = 1e-5

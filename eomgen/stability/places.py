@@ -14,7 +14,7 @@ from eomgen.analysis import equilibrium
 from eomgen.analysis.equilibrium_records import Equilibrium
 from eomgen.checks import samples
 from eomgen.dimension import NONE
-from eomgen.errors import EomgenError
+from eomgen.errors import EomgenError, UsageError
 from eomgen.mechanics import machine
 from eomgen.model import Coordinate, Model
 from eomgen.numerics.records import Array, Stopped
@@ -101,6 +101,8 @@ def _equilibria(study: Study, start: Start) -> list[Equilibrium]:
         EomgenError: the scene has no statics.
     """
     model, given = study.model, start.given
+    if model.quaternions:
+        raise UsageError("not looked for: statics needs turns by angles, not by a quaternion")
     inputs = {i.name: _exact(v) for i, v in zip(model.inputs, given.inputs, strict=True)}
     found = equilibrium.solve(model, inputs, _exact(start.time), _parameters(model, start))
     free = [e for e in found.found if not e.contacts]

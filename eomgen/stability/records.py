@@ -9,6 +9,7 @@ from eomgen.numerics.records import Array
 from eomgen.stability.theory import Linear
 
 START, REST, RANGE = "start", "rest", "range"  # kinds of places
+UNDAMPED = 1e-6  # a damping ratio below it is rounding
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,14 @@ class Mode:
     def damping_ratio(self) -> float:
         """-Re lambda / |lambda|: 0 undamped, 1 a decay, negative where it grows by itself."""
         return -self.value.real / abs(self.value)
+
+    def __str__(self) -> str:
+        """In a few words."""
+        ratio = self.damping_ratio
+        if abs(self.value.imag) < UNDAMPED * self.rate:
+            return f"{self.rate:.4g}/s ({'decays' if ratio > 0 else 'grows'})"
+        damping = "undamped" if abs(ratio) < UNDAMPED else f"damping ratio {ratio:.3g}"
+        return f"{self.rate:.4g} rad/s ({damping})"
 
 
 @dataclass(frozen=True)

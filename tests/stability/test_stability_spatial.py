@@ -33,14 +33,12 @@ def test_energy_drift_is_as_measured(method):
         assert drift(scene, rows) == pytest.approx(wanted, rel=0.3)
 
 
-def test_midpoint_keeps_a_band_and_semi_euler_does_not():
-    scene, bands = arm(), {}
-    for method in ("midpoint", "semi-euler"):
-        rows = run(scene, method, start(stepped("skew_arm")), 2e-3, 100_000, 10)
-        found = scene.sweep("energy_flow", rows.times, rows.states)[:, 0]
-        errors = np.abs(found - found[0])
-        bands[method] = errors[-1000:].max() / errors[:1000].max()
-    assert bands["midpoint"] < 1.1 < 2 < bands["semi-euler"]
+def test_midpoint_keeps_a_band():
+    scene = arm()
+    rows = run(scene, "midpoint", start(stepped("skew_arm")), 2e-3, 100_000, 10)
+    found = scene.sweep("energy_flow", rows.times, rows.states)[:, 0]
+    errors = np.abs(found - found[0])
+    assert errors[-1000:].max() < 1.1 * errors[:1000].max()
 
 
 @pytest.mark.parametrize("method", DRIFTS)
@@ -50,7 +48,7 @@ def test_the_order_is_that_of_the_table(method):
     scene = engine(steps, inputs=(0.5, -0.25))
     slope = scene.function("state_derivative")
     exact = solve_ivp(slope, (0, 1), start(steps), "DOP853", rtol=1e-13, atol=1e-13).y[:, -1]
-    counts = (25, 50, 100) if METHODS[method].order > 3 else (200, 400, 800)
+    counts = (50, 100, 200) if METHODS[method].order > 3 else (200, 400, 800)
     errors = [
         np.abs(run(scene, method, start(steps), 1 / n, n).states[-1] - exact).max() for n in counts
     ]
