@@ -71,7 +71,7 @@ def _ratio(value: float | None) -> str:
 
 def _criteria() -> Iterator[str]:
     yield "  predicted: by the eigenvalues, the smallest of all places, which is `where`"
-    yield "  by the C: there, by bisection; at rest nothing may grow, however slowly; in motion a run"
+    yield "  by the C: there, by bisection; at rest nothing may grow, in motion as for a run"
     yield f"  run: {RUN} steps, finite, the kinetic energy below {BLOWN:g} times that of a fine run"
     yield f"  none: no limit, tried up to {10**DECADES}/omega of the fastest mode"
 
