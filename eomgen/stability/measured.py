@@ -117,7 +117,10 @@ def _moving(
     setup: Setup, method: Method, place: Place, guess: float
 ) -> Callable[[float], bool] | None:
     """Whether a run fails; None where the run that it is compared with does."""
-    usual = _kinetic(setup, _run(setup, method, place, guess, FINE))
+    for finer in (1, FINE, FINE**2):
+        usual = _kinetic(setup, _run(setup, method, place, guess / finer, FINE))
+        if usual < np.inf:
+            break
     if not 0 < usual < np.inf:
         return None
     return lambda step: (
