@@ -333,6 +333,33 @@ def test_the_damped_step_of_c_is_that_of_numpy(formulation):
     np.testing.assert_allclose(both[0], both[1], rtol=1e-11, atol=1e-12)
 
 
+def damped_chain(count):
+    """Masses in a row, each damped to the one before."""
+    names = [f"x_{i}" for i in range(1, count + 1)]
+    gaps = [names[0], *(f"{b} - {a}" for a, b in zip(names, names[1:], strict=False))]
+    return "\n".join([
+        "eom: 1", "system: Damped chain", "space: line", "gravity: 0",
+        "parameters: {m: 1 kg, k: 30 N/m, d: 50 N*s/m}",
+        "coordinates: {" + ", ".join(f"{n}: m" for n in names) + "}",
+        "bodies:", *(f'  b{i}: {{mass: m, at: "[{n}]"}}' for i, n in enumerate(names)),
+        "springs:", *(f"  - {{along: {g}, stiffness: k}}" for g in gaps),
+        "dampers:", *(f"  - {{along: {g}, damping: d}}" for g in gaps),
+        "initial: {" + ", ".join(f"{n}: 0.1 m, {n}': 0 m/s" for n in names) + "}",
+    ])  # fmt: skip
+
+
+def test_a_long_chain_is_damped_by_a_loop():
+    """Beyond the size up to which M is factored unrolled."""
+    tool("cc")
+    steps = stepping.of(study.of_text(damped_chain(14), "chain.yaml"), ("semi-euler-damped",))
+    given = Arguments((), tuple(float(p.value) for p in steps.program.parameters))
+    engine, state = EngineC(steps, given), start(steps)
+    change = damped_change(engine, state, 0.02)
+    _, after = called(engine, "semi_euler_damped", state, 0.02)
+    np.testing.assert_allclose(after[14:], change, rtol=1e-10)
+    assert np.abs(change).max() > 0.01
+
+
 def test_damping_is_no_obstacle_to_the_step_where_it_is_implicit():
     """A rate of 8000/s in the dampers of a linkage: at h = 0.01 the explicit step is lost."""
     tool("cc")
