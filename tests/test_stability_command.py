@@ -68,6 +68,7 @@ def arm():
     return make.findings(study_of("skew_arm"), Wish(inputs=ARM))
 
 
+@pytest.mark.slow
 def test_a_spatial_arm_bears_what_its_eigenvalues_say(arm):
     """Skew axes, full inertia: the C at rest, and a run from the start."""
     for x in arm.limits:
@@ -79,6 +80,7 @@ def test_a_spatial_arm_bears_what_its_eigenvalues_say(arm):
     assert "verlet: E-SYM" in "".join(arm.omitted)
 
 
+@pytest.mark.slow
 def test_modes_of_the_arm_are_those_of_its_differences(arm):
     """The slowest and the fastest eigenvalue at the start, by differences of the Python module."""
     from eomgen.numerics.engine_python import EnginePython

@@ -88,7 +88,7 @@ def _conditions(found: Findings) -> Iterator[str]:
 
 def as_json(found: Findings) -> str:
     """One object; steps without a limit are the word "none"."""
-    return json.dumps(_object(found), indent=2, ensure_ascii=False)
+    return json.dumps(_object(found), indent=2, ensure_ascii=False) + "\n"
 
 
 def _object(found: Findings) -> dict[str, Any]:

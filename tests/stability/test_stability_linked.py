@@ -190,8 +190,12 @@ UNEQUAL = {
 }
 
 
-@pytest.mark.parametrize("formulation", ["multiplier", "nullspace"])
-@pytest.mark.parametrize("which", UNEQUAL)
+@pytest.mark.parametrize(
+    "formulation", ["multiplier", pytest.param("nullspace", marks=pytest.mark.slow)]
+)
+@pytest.mark.parametrize(
+    "which", [pytest.param(n, marks=pytest.mark.slow if "rocker" not in n else ()) for n in UNEQUAL]
+)
 def test_row_12_links_unequal_by_1e_6_never_fail_in_silence(which, formulation):
     """A bar off by 1e-6 closes the passage: the others meet it as they would meet a stop."""
     steps = stepped(FOUR_BAR.format(*UNEQUAL[which], TURNING), formulation)
@@ -238,7 +242,10 @@ def _accelerations(mass, j, load):
     return inverse @ (load - j.T @ np.linalg.solve(s, j @ inverse @ load))
 
 
-@pytest.mark.parametrize("formulation", ["multiplier", "nullspace", "minimal"])
+@pytest.mark.parametrize(
+    "formulation",
+    ["multiplier", *(pytest.param(n, marks=pytest.mark.slow) for n in ("nullspace", "minimal"))],
+)
 def test_row_13_the_tool_drops_what_follows_from_other_rows(formulation):
     twice = CRANK_ROCKER.replace("constraints:\n", "constraints:\n  again: {holonomic: Cr = C}\n")
     ours, plain = stepped(twice, formulation), stepped(CRANK_ROCKER, formulation)
