@@ -134,13 +134,22 @@ def _accurate(mode: Mode | None, horizon: float) -> float | None:
 def _limit(made: Setup, method: Method, looked: Looked) -> Limit:
     """The smallest prediction of all places, of equals at rest; by the C there, and in a run."""
     found = [(_predicted(method, p), p) for p in looked.places]
-    predicted, place = min(found, key=lambda pair: (pair[0], pair[1].kind != REST))
+    predicted, place = min(found, key=_preferred)
     if not made.is_compiled:
         return Limit(method.name, predicted, place.name, None, None)
     seen = measured.largest_step(made, method, place, predicted)
     starts = [p for p in looked.of(START) if p is not place]
     runs = [measured.largest_step(made, method, p, predicted) for p in starts]
     return Limit(method.name, predicted, place.name, seen, runs[0] if runs else seen)
+
+
+def _preferred(pair: tuple[float, Place]) -> tuple[float, bool, bool]:
+    """The smallest step first; of those that agree in six digits one at rest where something moves.
+
+    Equilibria that are stable stand first among their like.
+    """
+    predicted, place = pair
+    return float(f"{predicted:.6g}"), theory.fastest(place.matrix) == 0, place.kind != REST
 
 
 def _predicted(method: Method, place: Place) -> float:
