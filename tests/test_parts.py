@@ -14,7 +14,7 @@ from eomgen.interpreter import FLOAT, call
 from eomgen.numerics.compiled import build
 from eomgen.program import IN_MOTION, Assign, Value, operands
 from eomgen.render.code_context import Code, Style, coded
-from eomgen.render.lowered import atoms, lower
+from eomgen.render.lowered import atoms, lowered
 from eomgen.render.parts import divided
 from eomgen.render.routines import ROWS
 from eomgen.render.targets import TARGETS, render
@@ -106,8 +106,8 @@ def test_parts_of_programs_written_by_hand(name):
 @pytest.mark.parametrize("limit", [2, 10, 50])
 def test_slots_carry_what_later_parts_read(limit):
     """Each part reads only what it computes, or what a slot still holds."""
-    function = lower(program_of("skew_arm").function("state_derivative"))
-    cut = divided(function, limit)
+    found = lowered(program_of("skew_arm").function("state_derivative"))
+    function, cut = found.function, divided(found, limit)
     assert sum((p.statements for p in cut.parts), ()) == function.statements
     assert max(len(p.statements) for p in cut.parts) <= limit
     held, results = {}, {}
@@ -128,8 +128,8 @@ def test_slots_carry_what_later_parts_read(limit):
 
 
 def test_a_short_function_is_in_one_piece():
-    function = lower(program_of("simple_pendulum").function("energy"))
-    assert divided(function, len(function.statements)) is None
+    found = lowered(program_of("simple_pendulum").function("energy"))
+    assert divided(found, len(found.function.statements)) is None
 
 
 def test_a_singular_pivot_in_any_part_writes_nothing():

@@ -6,7 +6,7 @@ from fractions import Fraction
 import sympy as sp
 
 from eomgen.errors import UsageError
-from eomgen.program import Apply, Expression, Number, Read, Value
+from eomgen.program import Apply, Expression, Number
 from eomgen.render.dialects import Dialect
 
 INFIX = {"add": ("+", 1), "subtract": ("-", 1), "multiply": ("*", 2), "divide": ("/", 2)}
@@ -43,7 +43,7 @@ def expression(tree: Expression, dialect: Dialect, names: Names) -> str:
 def _printed(tree: Expression, dialect: Dialect, names: Names) -> tuple[str, int]:
     """The text and how tightly it binds."""
     if not isinstance(tree, Apply):
-        return _atom(tree, dialect, names)
+        return _number(tree, dialect) if isinstance(tree, Number) else (names[tree], ATOM)
     operator, operands = tree.operator, tree.operands
     if operator in INFIX:
         sign, level = INFIX[operator]
@@ -58,10 +58,8 @@ def _printed(tree: Expression, dialect: Dialect, names: Names) -> tuple[str, int
     return f"{dialect.calls[operator]}({arguments})", ATOM
 
 
-def _atom(tree: Number | Read | Value, dialect: Dialect, names: Names) -> tuple[str, int]:
-    """A number, argument or value, and how tightly it binds."""
-    if not isinstance(tree, Number):
-        return names[tree], ATOM
+def _number(tree: Number, dialect: Dialect) -> tuple[str, int]:
+    """A number, and how tightly it binds."""
     text = dialect.number.format(literal(abs(tree.value)))
     return (f"-{text}", UNARY) if tree.value < 0 else (text, ATOM)
 

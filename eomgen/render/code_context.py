@@ -12,7 +12,7 @@ from eomgen.render.code import Names, expression, number
 from eomgen.render.dialects import C_FUNCTIONS, PLAIN, PYTHON, C, Dialect
 from eomgen.render.lowered import atoms
 from eomgen.render.names import escaped, prefix
-from eomgen.render.routines import Routine, routine
+from eomgen.render.routines import Routine, components, routine
 
 WAVES = ("pair", "sine", "cosine")
 LONGEST_FORMULA = 60  # characters of a comment
@@ -78,8 +78,9 @@ def _code(subject: Program | Code) -> Code:
 def interface(program: Program, dialect: Dialect) -> dict[str, Any]:
     """What every code template is given: plain text and numbers only."""
     reserved = dialect.reserved_members
-    functions = tuple(routine(f, program, dialect) for f in program.functions)
-    prepare = None if program.prepare is None else routine(program.prepare, program, dialect)
+    given = components(program, dialect)
+    functions = tuple(routine(f, program, dialect, given) for f in program.functions)
+    prepare = None if program.prepare is None else routine(program.prepare, program, dialect, given)
     everything = functions if prepare is None else (*functions, prepare)
     used = frozenset[str]().union(*(f.operators for f in everything))
     statements = [s for f in program.functions for s in f.statements]

@@ -1,8 +1,8 @@
 """A function as machines like it: powers as products, waves named, no dead values."""
 
 from collections import Counter
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import count
 
@@ -24,6 +24,48 @@ UNROLLED = 64  # largest exponent written as products
 ONE = Number(Fraction(1))
 PLAIN = frozenset(("add", "subtract", "multiply", "divide"))  # these stay as they are
 Name = Callable[[Expression], Value]  # makes an assignment of its argument
+Atom = Number | Read | Value
+
+
+@dataclass(frozen=True)
+class Content:
+    """What expressions are made of: atoms from left to right, and the operators between."""
+
+    atoms: tuple[Atom, ...]
+    operators: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Lowered:
+    """A function, and what is in each of its statements and in the results."""
+
+    function: Function
+    contents: tuple[Content, ...]
+    results: Content
+
+    @property
+    def operations(self) -> Counter[str]:
+        """How often each operator is applied; the loop of a `Solve` is not counted."""
+        counts = Counter(self.results.operators)
+        for each in self.contents:
+            counts.update(each.operators)
+        return counts
+
+
+def content(expressions: Iterable[Expression]) -> Content:
+    """What expressions are made of."""
+    atoms: list[Atom] = []
+    operators: list[str] = []
+    stack = [*expressions]
+    stack.reverse()
+    while stack:
+        part = stack.pop()
+        if isinstance(part, Apply):
+            operators.append(part.operator)
+            stack.extend(part.operands[::-1])
+        else:
+            atoms.append(part)
+    return Content(tuple(atoms), tuple(operators))
 
 
 def lower(function: Function) -> Function:
@@ -31,6 +73,11 @@ def lower(function: Function) -> Function:
 
     Every sine and cosine has a statement of its own.
     """
+    return lowered(function).function
+
+
+def lowered(function: Function) -> Lowered:
+    """`lower`, and what the statements are made of."""
     statements: list[Statement] = []
     fresh = _fresh_names(function)
 
@@ -74,9 +121,33 @@ def _map(statement: Statement, change: Callable[[Expression], Expression]) -> St
 def _lowered(statement: Statement, name: Name) -> Statement:
     """The statement with simple expressions; one that names a wave is left to do so."""
     match statement:
+        case Assign(_, expression) if _is_simple(expression):
+            return statement
         case Assign(_, Apply("sin" | "cos" as wave, (angle,))):
             return replace(statement, expression=Apply(wave, (_simple(angle, name),)))
     return _map(statement, lambda e: _simple(e, name))
+
+
+def _is_simple(expression: Expression) -> bool:
+    """Whether nothing in an expression is to be changed: no more than sums, products, signs."""
+    stack = [expression]
+    while stack:
+        part = stack.pop()
+        if isinstance(part, Apply):
+            if part.operator not in PLAIN and not _is_sign(part):
+                return False
+            stack += part.operands
+    return True
+
+
+def _is_sign(part: Apply) -> bool:
+    """Whether an operator is a minus before a value or a sum, product or quotient."""
+    if part.operator != "negate":
+        return False
+    (operand,) = part.operands
+    if isinstance(operand, Apply):
+        return operand.operator in PLAIN
+    return not isinstance(operand, Number)
 
 
 def _simple(expression: Expression, name: Name) -> Expression:
@@ -121,30 +192,25 @@ def _product(base: Expression, exponent: int, name: Name) -> Expression:
     return Apply("multiply", (root, root))
 
 
-def atoms(expression: Expression) -> list[Number | Read | Value]:
+def atoms(expression: Expression) -> tuple[Atom, ...]:
     """The numbers, arguments and values in an expression, from left to right."""
-    found: list[Number | Read | Value] = []
-    stack = [expression]
-    while stack:
-        part = stack.pop()
-        if isinstance(part, Apply):
-            stack.extend(reversed(part.operands))
-        else:
-            found.append(part)
-    return found
+    return content((expression,)).atoms
 
 
-def _without_dead_values(function: Function) -> Function:
+def _without_dead_values(function: Function) -> Lowered:
     """Backward over the statements: an assignment stays if something after it reads it."""
-    alive = {a.name for e in function.results for a in atoms(e) if isinstance(a, Value)}
-    kept: list[Statement] = []
+    results = content(function.results)
+    alive = {a for a in results.atoms if isinstance(a, Value)}
+    kept: list[tuple[Statement, Content]] = []
     for statement in reversed(function.statements):
-        if isinstance(statement, Assign) and statement.name not in alive:
+        if isinstance(statement, Assign) and Value(statement.name) not in alive:
             continue
-        kept.append(statement)
-        for expression in operands(statement):
-            alive.update([a.name for a in atoms(expression) if isinstance(a, Value)])
-    return replace(function, statements=tuple(reversed(kept)))
+        inside = content(operands(statement))
+        kept.append((statement, inside))
+        alive.update([a for a in inside.atoms if isinstance(a, Value)])
+    kept.reverse()
+    live = replace(function, statements=tuple(statement for statement, _ in kept))
+    return Lowered(live, tuple(inside for _, inside in kept), results)
 
 
 def expressions(function: Function) -> tuple[Expression, ...]:
@@ -155,11 +221,4 @@ def expressions(function: Function) -> tuple[Expression, ...]:
 
 def operations(function: Function) -> Counter[str]:
     """How often each operator is applied; the loop of a `Solve` is not counted."""
-    counts: Counter[str] = Counter()
-    stack = list(expressions(function))
-    while stack:
-        part = stack.pop()
-        if isinstance(part, Apply):
-            counts[part.operator] += 1
-            stack.extend(part.operands)
-    return counts
+    return Counter(content(expressions(function)).operators)

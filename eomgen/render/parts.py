@@ -6,12 +6,13 @@ so do the results, in the first slots, until every pivot has been checked.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
+from itertools import chain
 
-from eomgen.program import Expression, Function, Statement, Value, operands
-from eomgen.render.lowered import atoms, defined
+from eomgen.program import Expression, Statement, Value
+from eomgen.render.lowered import Atom, Content, Lowered, content, defined
 
 Slots = tuple[tuple[Expression, int], ...]
 
@@ -23,6 +24,7 @@ class Part:
     statements: tuple[Statement, ...]
     loads: tuple[tuple[Value, int], ...]
     stores: Slots
+    atoms: tuple[Atom, ...]  # all that is read by the statements, in order, and by the stores
 
 
 @dataclass(frozen=True)
@@ -33,22 +35,43 @@ class Divided:
     slots: int
 
 
-def divided(function: Function, limit: int) -> Divided | None:
+def whole(lowered: Lowered) -> Part:
+    """A function as the only part of itself."""
+    function = lowered.function
+    stores = tuple((e, i) for i, e in enumerate(function.results))
+    return Part(function.statements, (), stores, _atoms(lowered.contents, lowered.results))
+
+
+def _atoms(contents: Iterable[Content], last: Content) -> tuple[Atom, ...]:
+    return (*chain.from_iterable([each.atoms for each in contents]), *last.atoms)
+
+
+def divided(lowered: Lowered, limit: int) -> Divided | None:
     """The parts of a function with more statements than `limit`, of half of it; else None."""
-    statements = function.statements
+    statements = lowered.function.statements
     if len(statements) <= limit:
         return None
     count = -(-2 * len(statements) // limit)
     size = -(-len(statements) // count)
-    chunks = [statements[i : i + size] for i in range(0, len(statements), size)]
-    return _connected(chunks, function.results)
+    starts = range(0, len(statements), size)
+    chunks = [statements[i : i + size] for i in starts]
+    contents = [lowered.contents[i : i + size] for i in starts]
+    return _connected(chunks, contents, lowered.function.results)
 
 
-def _connected(chunks: Sequence[tuple[Statement, ...]], results: Sequence[Expression]) -> Divided:
+def _connected(
+    chunks: Sequence[tuple[Statement, ...]],
+    contents: Sequence[Sequence[Content]],
+    results: Sequence[Expression],
+) -> Divided:
     """The parts with their loads and stores; a slot serves again when its value is dead."""
     place = {Value(n): i for i, chunk in enumerate(chunks) for s in chunk for n in defined(s)}
     stored = _results_by_part(results, place, len(chunks))
-    reads = [_reads(chunk, stored[i]) for i, chunk in enumerate(chunks)]
+    atoms = [
+        _atoms(inside, content([e for e, _ in kept]))
+        for inside, kept in zip(contents, stored, strict=True)
+    ]
+    reads = [dict.fromkeys(a for a in found if isinstance(a, Value)) for found in atoms]
     last = {value: i for i, values in enumerate(reads) for value in values}
     shelf = _Shelf(len(results))
     parts = []
@@ -57,7 +80,7 @@ def _connected(chunks: Sequence[tuple[Statement, ...]], results: Sequence[Expres
         shelf.clear(v for v, _ in loads if last[v] == i)
         values = (Value(n) for s in chunk for n in defined(s))
         stores = tuple((v, shelf.put(v)) for v in values if last.get(v, i) > i)
-        parts.append(Part(chunk, loads, stores + stored[i]))
+        parts.append(Part(chunk, loads, stores + stored[i], atoms[i]))
     return Divided(tuple(parts), shelf.size)
 
 
@@ -89,17 +112,7 @@ def _results_by_part(
     """For each part the results that are known at its end, in the slots of their numbers."""
     stored: list[list[tuple[Expression, int]]] = [[] for _ in range(count)]
     for number, result in enumerate(results):
-        part = max((place[a] for a in atoms(result) if isinstance(a, Value)), default=0)
+        atoms = content((result,)).atoms
+        part = max((place[a] for a in atoms if isinstance(a, Value)), default=0)
         stored[part].append((result, number))
     return [tuple(slots) for slots in stored]
-
-
-def _reads(chunk: Sequence[Statement], stored: Slots) -> tuple[Value, ...]:
-    """The values that a part reads, each once, in order."""
-
-    def expressions() -> Iterator[Expression]:
-        for statement in chunk:
-            yield from operands(statement)
-        yield from (result for result, _ in stored)
-
-    return tuple(dict.fromkeys(a for e in expressions() for a in atoms(e) if isinstance(a, Value)))

@@ -1,6 +1,6 @@
 """Functions of a program as text: arguments, steps and results, for a template to lay out."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from eomgen.program import (
@@ -10,6 +10,7 @@ from eomgen.program import (
     Assign,
     Expression,
     Function,
+    Number,
     Program,
     Read,
     RequirePositive,
@@ -20,9 +21,9 @@ from eomgen.program import (
 )
 from eomgen.render.code import Names, expression
 from eomgen.render.dialects import Dialect
-from eomgen.render.lowered import atoms, expressions, lower, operations
+from eomgen.render.lowered import Atom, content, lowered
 from eomgen.render.names import escaped, prefix
-from eomgen.render.parts import Part, divided
+from eomgen.render.parts import Part, divided, whole
 
 COUNTED = {"add": "+", "subtract": "-", "negate": "-", "multiply": "*", "divide": "/"}
 READ = (*ARGUMENTS, "constants")
@@ -34,12 +35,16 @@ WAVES = "waves"  # the array of sines and cosines of a batch
 
 @dataclass(frozen=True)
 class Argument:
-    """A local variable `code` that holds component `index`, called `name`, of `source`."""
+    """A local variable `code` that holds component `index`, called `name`, of `source`.
+
+    `member`: its name in the interface, where `source` has named components.
+    """
 
     code: str
     source: str
     index: int
     name: str
+    member: str = ""
 
 
 @dataclass(frozen=True)
@@ -121,64 +126,18 @@ class Routine:
     can_fail: bool  # a pivot is checked
 
 
-def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
-    """A function of the program as text, every argument that it reads in a variable of its own."""
-    lowered = lower(function)
-    found = _survey(expressions(lowered))
-    text = _Text(dialect, _names(lowered, found, program, dialect), _labels(program))
-    cut = divided(lowered, dialect.longest)
-    whole = Part(lowered.statements, (), tuple((e, i) for i, e in enumerate(lowered.results)))
-    return Routine(
-        lowered.name,
-        lowered.about,
-        lowered.shape,
-        text.body(whole, found) if cut is None else Body((), (), (), found.used),
-        () if cut is None else tuple(text.body(part, _survey_of(part)) for part in cut.parts),
-        tuple(map(text.lanes, (whole,) if cut is None else cut.parts)) if dialect.lanes else (),
-        0 if cut is None else cut.slots,
-        len(lowered.results),
-        frozenset(operations(lowered)),
-        _counted(lowered),
-        function.arguments,
-        found.used,
-        _checks_pivots(function),
-    )
-
-
 @dataclass(frozen=True)
-class _Survey:
-    """What expressions read: arguments by declaration, without the time, and names of values."""
+class Components:
+    """The names of the components of every argument: of the specification, of the interface."""
 
-    reads: tuple[Read, ...]
-    values: tuple[str, ...]
-    used: tuple[str, ...]  # which of `READ`
-
-
-def _survey(trees: Iterable[Expression]) -> _Survey:
-    """All that is read, found in one pass."""
-    reads: dict[tuple[str, int], Read] = {}
-    values: dict[str, None] = {}
-    for tree in trees:
-        for atom in atoms(tree):
-            if isinstance(atom, Value):
-                values[atom.name] = None
-            elif isinstance(atom, Read):
-                reads[atom.argument, atom.index] = atom
-    found = {argument for argument, _ in reads}
-    given = [r for r in reads.values() if r.argument != "time"]
-    given.sort(key=lambda r: (READ.index(r.argument), r.index))
-    return _Survey(tuple(given), tuple(values), tuple(a for a in READ if a in found))
+    labels: dict[str, list[str]]
+    members: dict[str, tuple[str, ...]]
 
 
-def _survey_of(part: Part) -> _Survey:
-    inside = (e for s in part.statements for e in operands(s))
-    return _survey([*inside, *(e for e, _ in part.stores)])
-
-
-def _labels(program: Program) -> dict[str, list[str]]:
-    """The names of the components of every argument in the specification."""
+def components(program: Program, dialect: Dialect) -> Components:
+    """The names of the components of a program's arguments."""
     prepared = program.prepare.results if program.prepare else ()
-    return {
+    labels = {
         "time": ["t"],
         "state": [v.name for v in program.coordinates + program.speeds],
         "accelerations": [f"{v.name}'" for v in program.speeds],
@@ -186,16 +145,61 @@ def _labels(program: Program) -> dict[str, list[str]]:
         "parameters": [v.name for v in program.parameters],
         "constants": [f"c{i}" for i in range(len(prepared))],
     }
+    return Components(labels, {k: escaped(v, dialect.reserved_members) for k, v in labels.items()})
 
 
-def _names(
-    function: Function, found: _Survey, program: Program, dialect: Dialect
-) -> dict[Expression, str]:
+def routine(function: Function, program: Program, dialect: Dialect, given: Components) -> Routine:
+    """A function of the program as text, every argument that it reads in a variable of its own."""
+    found = lowered(function)
+    everything = whole(found)
+    read = _survey(everything.atoms)
+    own = _own_names(program, found.function)
+    text = _Text(dialect, _names(read, given, dialect.reserved | own), given)
+    cut = divided(found, dialect.longest)
+    parts = (everything,) if cut is None else cut.parts
+    counts = found.operations
+    return Routine(
+        function.name,
+        function.about,
+        function.shape,
+        text.body(everything, read) if cut is None else Body((), (), (), read.used),
+        () if cut is None else tuple(text.body(part, _survey(part.atoms)) for part in parts),
+        tuple(map(text.lanes, parts)) if dialect.lanes else (),
+        0 if cut is None else cut.slots,
+        len(function.results),
+        frozenset(counts),
+        _counted(found.function, counts),
+        function.arguments,
+        read.used,
+        _checks_pivots(function),
+    )
+
+
+@dataclass(frozen=True)
+class _Survey:
+    """What expressions read: arguments by declaration, without the time, and values."""
+
+    reads: tuple[Read, ...]
+    values: tuple[Value, ...]
+    used: tuple[str, ...]  # which of `READ`
+
+
+def _survey(atoms: Iterable[Atom]) -> _Survey:
+    """All that is read, each once."""
+    read = dict.fromkeys([a for a in atoms if not isinstance(a, Number)])
+    reads = [a for a in read if isinstance(a, Read)]
+    values = [a for a in read if isinstance(a, Value)]
+    found = {r.argument for r in reads}
+    given = [r for r in reads if r.argument != "time"]
+    given.sort(key=lambda r: (READ.index(r.argument), r.index))
+    return _Survey(tuple(given), tuple(values), tuple(a for a in READ if a in found))
+
+
+def _names(found: _Survey, given: Components, reserved: frozenset[str]) -> dict[Expression, str]:
     """The variable of everything that a function reads or computes."""
-    given = _labels(program)
-    labels = [given[r.argument][r.index] for r in found.reads] + list(found.values)
-    codes = escaped(labels, dialect.reserved | _own_names(program, function))
-    read: list[Expression] = [*found.reads, *map(Value, found.values)]
+    labels = [given.labels[r.argument][r.index] for r in found.reads]
+    codes = escaped([*labels, *(v.name for v in found.values)], reserved)
+    read: list[Expression] = [*found.reads, *found.values]
     return dict(zip(read, codes, strict=True)) | {Read("time", 0): "t"}
 
 
@@ -219,18 +223,21 @@ class _Text:
 
     dialect: Dialect
     names: Names
-    labels: dict[str, list[str]]
+    given: Components
 
     def of(self, tree: Expression) -> str:
         """An expression."""
         return expression(tree, self.dialect, self.names)
 
+    def argument(self, read: Read) -> Argument:
+        """The variable of a component."""
+        source, index = read.argument, read.index
+        label, member = self.given.labels[source][index], self.given.members[source][index]
+        return Argument(self.names[read], source, index, label, member)
+
     def body(self, part: Part, found: _Survey) -> Body:
         """The statements of a function, or of a part of one, which read what was found."""
-        arguments = tuple(
-            Argument(self.names[r], r.argument, r.index, self.labels[r.argument][r.index])
-            for r in found.reads
-        )
+        arguments = tuple(map(self.argument, found.reads))
         loads = tuple(Argument(self.names[v], WORK, slot, v.name) for v, slot in part.loads)
         return Body(
             arguments + loads,
@@ -258,15 +265,15 @@ class _Text:
             for name in (names[w] for w in WAVE_KINDS if w in names):
                 read.append(Argument(self.names[Value(name)], WAVES, slot, name))
                 slot += 1
-        left = replace(part, statements=tuple(rest))
-        body = self.body(left, _survey_of(left))
+        inside = content([e for s in rest for e in operands(s)] + [e for e, _ in part.stores])
+        body = self.body(replace(part, statements=tuple(rest)), _survey(inside.atoms))
         return Lanes(tuple(waves), replace(body, arguments=body.arguments + tuple(read)))
 
     def steps(self, statements: Sequence[Statement]) -> Iterator[Step]:
         """The statements in order; a sine and its cosine are one step where the dialect likes."""
         waiting: Statement | None = None
         for statement in statements:
-            pair = _pair(waiting, statement) if self.dialect.pairs else None
+            pair = _pair(waiting, statement) if waiting is not None else None
             if pair is not None:
                 sine, cosine, angle = pair
                 yield Step("pair", self.names[sine], self.of(angle), self.names[cosine])
@@ -274,7 +281,9 @@ class _Text:
                 continue
             if waiting is not None:
                 yield self.step(waiting)
-            waiting = statement
+            waiting = statement if self.dialect.pairs and _is_wave(statement) else None
+            if waiting is None:
+                yield self.step(statement)
         if waiting is not None:
             yield self.step(waiting)
 
@@ -299,7 +308,13 @@ class _Text:
                 )
 
 
-def _pair(first: Statement | None, second: Statement) -> tuple[Value, Value, Expression] | None:
+def _is_wave(statement: Statement) -> bool:
+    """Whether a statement may be one half of a pair."""
+    tree = statement.expression if isinstance(statement, Assign) else None
+    return isinstance(tree, Apply) and tree.operator in WAVE_KINDS
+
+
+def _pair(first: Statement, second: Statement) -> tuple[Value, Value, Expression] | None:
     """Sine, cosine and their angle, where two statements compute these."""
     match first, second:
         case Assign(a, Apply("sin", (x,))), Assign(b, Apply("cos", (y,))) if x == y:
@@ -309,12 +324,11 @@ def _pair(first: Statement | None, second: Statement) -> tuple[Value, Value, Exp
     return None
 
 
-def _counted(function: Function) -> str:
+def _counted(function: Function, applied: Mapping[str, int]) -> str:
     """Operations in the order of `OPERATORS`; a system that a loop solves is named by its size."""
     counts: dict[str, int] = {}
-    applied = operations(function)
     for operator in OPERATORS:
-        if applied[operator] and operator != "pi":
+        if operator in applied and operator != "pi":
             sign = COUNTED.get(operator, operator)
             counts[sign] = counts.get(sign, 0) + applied[operator]
     parts = [f"{n} {sign}" for sign, n in counts.items()]

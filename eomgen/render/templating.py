@@ -2,6 +2,7 @@
 
 import re
 import traceback
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import jinja2
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from eomgen.errors import UsageError
+from eomgen.render.lines import named, rows, short_statements, statements, wrap
 
 SUFFIX = ".j2"
 
@@ -28,20 +30,6 @@ class _Sandbox(ImmutableSandboxedEnvironment):
         return not type(obj).__module__.startswith("sympy") and super().is_safe_attribute(
             obj, attr, value
         )
-
-
-def wrap(text: str, indent: int = 0, hanging: int = 4, width: int = 100) -> str:
-    """`text` broken at spaces; each line after the first starts `hanging` further right."""
-    left, further = " " * indent, " " * (indent + hanging)
-    if len(text) + indent <= width and "\n" not in text:
-        return left + text
-    lines, line = [], left
-    for word in text.split():
-        if len(line) + len(word) > width and line.strip():
-            lines.append(line.rstrip())
-            line = further
-        line += word + " "
-    return "\n".join([*lines, line.rstrip()])
 
 
 def one_line(text: str) -> str:
@@ -74,6 +62,10 @@ def docstring(text: str) -> str:
 
 FILTERS = {
     "wrap": wrap,
+    "rows": rows,
+    "named": named,
+    "statements": statements,
+    "short_statements": short_statements,
     "one_line": one_line,
     "c_comment": c_comment,
     "c_string": c_string,
@@ -86,6 +78,16 @@ def environment(user_folder: Path | None = None) -> jinja2.Environment:
     """Our templates, behind those of `user_folder`; ours also under the prefix `builtin/`."""
     if user_folder is not None and not user_folder.is_dir():
         raise UsageError(f"{user_folder}: no such folder of templates")
+    return _made(user_folder) if user_folder else _shipped()
+
+
+@cache
+def _shipped() -> jinja2.Environment:
+    """Our templates alone, which are compiled once."""
+    return _made(None)
+
+
+def _made(user_folder: Path | None) -> jinja2.Environment:
     ours = jinja2.FileSystemLoader(shipped("templates"))
     folders = [jinja2.FileSystemLoader(user_folder)] if user_folder else []
     made = _Sandbox(
