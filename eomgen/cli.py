@@ -128,7 +128,8 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
         notes = not NOTES.isdisjoint(targets)
         if wishes["method"] and not notes:
             raise UsageError("--method is how the notes derive: add -t latex or -t text")
-        choice = replace(choice, notes=notes, method=wishes["method"])
+        only = () if integrators else functions
+        choice = replace(choice, notes=notes, method=wishes["method"], functions=only)
         style = code_style(targets, wishes)
     study = studied(spec, format_, choice)
     wish = Wish(

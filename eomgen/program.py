@@ -48,10 +48,6 @@ class Value:
 
     name: str
 
-    def __hash__(self) -> int:
-        """That of the name: values are looked up often."""
-        return hash(self.name)
-
 
 @dataclass(frozen=True)
 class Apply:

@@ -137,7 +137,8 @@ def _symbol(draft: _Draft, node: Node) -> Expression:
 def _solved(draft: _Draft, node: Node) -> Expression:
     system = draft.expressions[node.operands[0]]
     assert isinstance(system, Apply)
-    return system.operands[node.datum]
+    row: int = node.datum
+    return system.operands[row]
 
 
 # what is read rather than computed

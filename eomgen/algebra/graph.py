@@ -276,15 +276,10 @@ def negate(a: Node) -> Node:
 
 def multiply(a: Node, b: Node) -> Node:
     """A product; the sign goes outside, numeric coefficients meet."""
-    graph = a.graph
-    if a is graph.one or b is graph.zero:
-        return b
-    if b is graph.one or a is graph.zero:
-        return a
     if a.operator == "number":
-        return _scale(a.datum, b)
+        return _times(a, b)
     if b.operator == "number":
-        return _scale(b.datum, a)
+        return _times(b, a)
     if a.operator == "negate":
         return negate(multiply(a.operands[0], b))
     if b.operator == "negate":
@@ -298,6 +293,13 @@ def multiply(a: Node, b: Node) -> Node:
         if x is not a and y is not b:
             return _scale(c * d, multiply(x, y))
     return binary("multiply", a, b) if a.id < b.id else binary("multiply", b, a)
+
+
+def _times(number: Node, a: Node) -> Node:
+    """The product of a number, often 0 or 1, and a value."""
+    if number is number.graph.zero:
+        return number
+    return a if number is number.graph.one else _scale(number.datum, a)
 
 
 def _cancelled(a: Node, b: Node) -> Node | None:

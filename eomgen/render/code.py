@@ -6,13 +6,13 @@ from fractions import Fraction
 import sympy as sp
 
 from eomgen.errors import UsageError
-from eomgen.program import Apply, Expression, Number
+from eomgen.program import Apply, Expression, Number, Value
 from eomgen.render.dialects import Dialect
 
 INFIX = {"add": ("+", 1), "subtract": ("-", 1), "multiply": ("*", 2), "divide": ("/", 2)}
 UNARY, ATOM = 3, 4
 
-Names = Mapping[Expression, str]
+Names = Mapping[Expression | str, str]  # of what is read; a value stands by its name
 
 
 def literal(value: Fraction) -> str:
@@ -42,6 +42,8 @@ def expression(tree: Expression, dialect: Dialect, names: Names) -> str:
 
 def _printed(tree: Expression, dialect: Dialect, names: Names) -> tuple[str, int]:
     """The text and how tightly it binds."""
+    if isinstance(tree, Value):
+        return names[tree.name], ATOM
     if not isinstance(tree, Apply):
         return _number(tree, dialect) if isinstance(tree, Number) else (names[tree], ATOM)
     operator, operands = tree.operator, tree.operands

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import count
+from itertools import chain, count
 
 from eomgen.program import (
     Apply,
@@ -44,12 +44,27 @@ class Lowered:
     results: Content
 
     @property
+    def atoms(self) -> tuple[Atom, ...]:
+        """All that is read, in order."""
+        return all_atoms((*self.contents, self.results))
+
+    @property
     def operations(self) -> Counter[str]:
         """How often each operator is applied; the loop of a `Solve` is not counted."""
         counts = Counter(self.results.operators)
         for each in self.contents:
             counts.update(each.operators)
         return counts
+
+
+def all_atoms(contents: Iterable[Content]) -> tuple[Atom, ...]:
+    """The atoms of several contents, one behind the other."""
+    return tuple(chain.from_iterable([each.atoms for each in contents]))
+
+
+def names(atoms: Iterable[Atom]) -> list[str]:
+    """The names of the values among atoms, in order."""
+    return [a.name for a in atoms if isinstance(a, Value)]
 
 
 def content(expressions: Iterable[Expression]) -> Content:
@@ -200,14 +215,14 @@ def atoms(expression: Expression) -> tuple[Atom, ...]:
 def _without_dead_values(function: Function) -> Lowered:
     """Backward over the statements: an assignment stays if something after it reads it."""
     results = content(function.results)
-    alive = {a for a in results.atoms if isinstance(a, Value)}
+    alive = {*names(results.atoms)}
     kept: list[tuple[Statement, Content]] = []
     for statement in reversed(function.statements):
-        if isinstance(statement, Assign) and Value(statement.name) not in alive:
+        if isinstance(statement, Assign) and statement.name not in alive:
             continue
         inside = content(operands(statement))
         kept.append((statement, inside))
-        alive.update([a for a in inside.atoms if isinstance(a, Value)])
+        alive.update(names(inside.atoms))
     kept.reverse()
     live = replace(function, statements=tuple(statement for statement, _ in kept))
     return Lowered(live, tuple(inside for _, inside in kept), results)

@@ -9,10 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
-from itertools import chain
 
 from eomgen.program import Expression, Statement, Value
-from eomgen.render.lowered import Atom, Content, Lowered, content, defined
+from eomgen.render.lowered import Atom, Content, Lowered, all_atoms, content, defined, names
 
 Slots = tuple[tuple[Expression, int], ...]
 
@@ -39,11 +38,7 @@ def whole(lowered: Lowered) -> Part:
     """A function as the only part of itself."""
     function = lowered.function
     stores = tuple((e, i) for i, e in enumerate(function.results))
-    return Part(function.statements, (), stores, _atoms(lowered.contents, lowered.results))
-
-
-def _atoms(contents: Iterable[Content], last: Content) -> tuple[Atom, ...]:
-    return (*chain.from_iterable([each.atoms for each in contents]), *last.atoms)
+    return Part(function.statements, (), stores, lowered.atoms)
 
 
 def divided(lowered: Lowered, limit: int) -> Divided | None:
@@ -65,23 +60,27 @@ def _connected(
     results: Sequence[Expression],
 ) -> Divided:
     """The parts with their loads and stores; a slot serves again when its value is dead."""
-    place = {Value(n): i for i, chunk in enumerate(chunks) for s in chunk for n in defined(s)}
+    made = [[n for s in chunk for n in defined(s)] for chunk in chunks]
+    place = {name: i for i, found in enumerate(made) for name in found}
     stored = _results_by_part(results, place, len(chunks))
     atoms = [
-        _atoms(inside, content([e for e, _ in kept]))
+        all_atoms((*inside, content([e for e, _ in kept])))
         for inside, kept in zip(contents, stored, strict=True)
     ]
-    reads = [dict.fromkeys(a for a in found if isinstance(a, Value)) for found in atoms]
-    last = {value: i for i, values in enumerate(reads) for value in values}
+    reads = [dict.fromkeys(names(found)) for found in atoms]
+    last = {name: i for i, found in enumerate(reads) for name in found}
     shelf = _Shelf(len(results))
     parts = []
     for i, chunk in enumerate(chunks):
-        loads = tuple((v, shelf.slots[v]) for v in reads[i] if place[v] < i)
-        shelf.clear(v for v, _ in loads if last[v] == i)
-        values = (Value(n) for s in chunk for n in defined(s))
-        stores = tuple((v, shelf.put(v)) for v in values if last.get(v, i) > i)
-        parts.append(Part(chunk, loads, stores + stored[i], atoms[i]))
+        loads = [(name, shelf.slots[name]) for name in reads[i] if place[name] < i]
+        shelf.clear(name for name, _ in loads if last[name] == i)
+        stores = [(name, shelf.put(name)) for name in made[i] if last.get(name, i) > i]
+        parts.append(Part(chunk, _values(loads), _values(stores) + stored[i], atoms[i]))
     return Divided(tuple(parts), shelf.size)
+
+
+def _values(slots: Iterable[tuple[str, int]]) -> tuple[tuple[Value, int], ...]:
+    return tuple((Value(name), slot) for name, slot in slots)
 
 
 @dataclass
@@ -89,10 +88,10 @@ class _Shelf:
     """The slots of values that cross; the lowest free one is taken."""
 
     size: int
-    slots: dict[Value, int] = field(default_factory=dict)
+    slots: dict[str, int] = field(default_factory=dict)
     free: list[int] = field(default_factory=list)
 
-    def put(self, value: Value) -> int:
+    def put(self, value: str) -> int:
         """A slot for a value."""
         if not self.free:
             heappush(self.free, self.size)
@@ -100,19 +99,18 @@ class _Shelf:
         self.slots[value] = heappop(self.free)
         return self.slots[value]
 
-    def clear(self, values: Iterable[Value]) -> None:
+    def clear(self, values: Iterable[str]) -> None:
         """Free the slots of dead values."""
         for value in values:
             heappush(self.free, self.slots.pop(value))
 
 
 def _results_by_part(
-    results: Sequence[Expression], place: dict[Value, int], count: int
+    results: Sequence[Expression], place: dict[str, int], count: int
 ) -> list[Slots]:
     """For each part the results that are known at its end, in the slots of their numbers."""
     stored: list[list[tuple[Expression, int]]] = [[] for _ in range(count)]
     for number, result in enumerate(results):
-        atoms = content((result,)).atoms
-        part = max((place[a] for a in atoms if isinstance(a, Value)), default=0)
+        part = max((place[name] for name in names(content((result,)).atoms)), default=0)
         stored[part].append((result, number))
     return [tuple(slots) for slots in stored]

@@ -10,18 +10,16 @@ from eomgen.program import (
     Assign,
     Expression,
     Function,
-    Number,
     Program,
     Read,
     RequirePositive,
     Solve,
     Statement,
-    Value,
     operands,
 )
 from eomgen.render.code import Names, expression
 from eomgen.render.dialects import Dialect
-from eomgen.render.lowered import Atom, content, lowered
+from eomgen.render.lowered import Atom, content, lowered, names
 from eomgen.render.names import escaped, prefix
 from eomgen.render.parts import Part, divided, whole
 
@@ -180,26 +178,27 @@ class _Survey:
     """What expressions read: arguments by declaration, without the time, and values."""
 
     reads: tuple[Read, ...]
-    values: tuple[Value, ...]
+    values: tuple[str, ...]
     used: tuple[str, ...]  # which of `READ`
 
 
 def _survey(atoms: Iterable[Atom]) -> _Survey:
     """All that is read, each once."""
-    read = dict.fromkeys([a for a in atoms if not isinstance(a, Number)])
-    reads = [a for a in read if isinstance(a, Read)]
-    values = [a for a in read if isinstance(a, Value)]
+    reads = {a for a in atoms if isinstance(a, Read)}
     found = {r.argument for r in reads}
     given = [r for r in reads if r.argument != "time"]
     given.sort(key=lambda r: (READ.index(r.argument), r.index))
+    values = dict.fromkeys(names(atoms))
     return _Survey(tuple(given), tuple(values), tuple(a for a in READ if a in found))
 
 
-def _names(found: _Survey, given: Components, reserved: frozenset[str]) -> dict[Expression, str]:
+def _names(
+    found: _Survey, given: Components, reserved: frozenset[str]
+) -> dict[Expression | str, str]:
     """The variable of everything that a function reads or computes."""
     labels = [given.labels[r.argument][r.index] for r in found.reads]
-    codes = escaped([*labels, *(v.name for v in found.values)], reserved)
-    read: list[Expression] = [*found.reads, *found.values]
+    codes = escaped([*labels, *found.values], reserved)
+    read: list[Expression | str] = [*found.reads, *found.values]
     return dict(zip(read, codes, strict=True)) | {Read("time", 0): "t"}
 
 
@@ -238,7 +237,7 @@ class _Text:
     def body(self, part: Part, found: _Survey) -> Body:
         """The statements of a function, or of a part of one, which read what was found."""
         arguments = tuple(map(self.argument, found.reads))
-        loads = tuple(Argument(self.names[v], WORK, slot, v.name) for v, slot in part.loads)
+        loads = tuple(Argument(self.names[v.name], WORK, slot, v.name) for v, slot in part.loads)
         return Body(
             arguments + loads,
             tuple(self.steps(part.statements)),
@@ -259,11 +258,11 @@ class _Text:
                 case _:
                     rest.append(statement)
         waves, read, slot = [], [], 0
-        for angle, names in found.items():
-            kind = "pair" if len(names) == 2 else WAVE_KINDS[next(iter(names))]
+        for angle, both in found.items():
+            kind = "pair" if len(both) == 2 else WAVE_KINDS[next(iter(both))]
             waves.append(Wave(kind, angle.argument, angle.index, slot))
-            for name in (names[w] for w in WAVE_KINDS if w in names):
-                read.append(Argument(self.names[Value(name)], WAVES, slot, name))
+            for name in (both[w] for w in WAVE_KINDS if w in both):
+                read.append(Argument(self.names[name], WAVES, slot, name))
                 slot += 1
         inside = content([e for s in rest for e in operands(s)] + [e for e, _ in part.stores])
         body = self.body(replace(part, statements=tuple(rest)), _survey(inside.atoms))
@@ -291,21 +290,24 @@ class _Text:
         """One statement."""
         match statement:
             case Assign(name, Apply("sin" | "cos" as wave, (angle,))) if self.dialect.pairs:
-                return Step(WAVE_KINDS[wave], self.names[Value(name)], self.of(angle))
+                return Step(WAVE_KINDS[wave], self.names[name], self.of(angle))
             case Assign(name, tree):
-                return Step("assign", self.names[Value(name)], self.of(tree))
+                return Step("assign", self.names[name], self.of(tree))
             case RequirePositive(value, scale):
-                return Step("require", self.names[value], scale=self.of(scale))
+                return Step("require", self.names[value.name], scale=self.of(scale))
             case Solve(unknowns, matrix, right):
-                places = [(Value(name), i) for i, name in enumerate(unknowns)]
                 return Step(
                     "solve",
                     name=unknowns[0],
-                    values=tuple((self.names[v], i) for v, i in places if v in self.names),
+                    values=self.solution(unknowns),
                     matrix=tuple(map(self.of, matrix)),
                     right=tuple(map(self.of, right)),
                     size=statement.size,
                 )
+
+    def solution(self, unknowns: Sequence[str]) -> tuple[tuple[str, int], ...]:
+        """The names of what is read of a solution, and where it stands."""
+        return tuple((self.names[x], i) for i, x in enumerate(unknowns) if x in self.names)
 
 
 def _is_wave(statement: Statement) -> bool:
@@ -314,13 +316,13 @@ def _is_wave(statement: Statement) -> bool:
     return isinstance(tree, Apply) and tree.operator in WAVE_KINDS
 
 
-def _pair(first: Statement, second: Statement) -> tuple[Value, Value, Expression] | None:
+def _pair(first: Statement, second: Statement) -> tuple[str, str, Expression] | None:
     """Sine, cosine and their angle, where two statements compute these."""
     match first, second:
         case Assign(a, Apply("sin", (x,))), Assign(b, Apply("cos", (y,))) if x == y:
-            return Value(a), Value(b), x
+            return a, b, x
         case Assign(a, Apply("cos", (x,))), Assign(b, Apply("sin", (y,))) if x == y:
-            return Value(b), Value(a), x
+            return b, a, x
     return None
 
 
