@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from itertools import chain
 from math import prod
 
-from eomgen.algebra.graph import Node, below, term
+from eomgen.algebra.graph import Node, below, reached, term
 from eomgen.algebra.ldl import Pivots
 from eomgen.program import (
     Apply,
@@ -57,8 +57,8 @@ def assemble(
     """
     if prod(shape) != len(results):
         raise ValueError(f"{name} has {len(results)} results, its shape is {shape}")
-    reached = {*below(results)} if pivots else {}
-    checks = tuple(pair for pair in pivots if _divisor(pair[0]) in reached)
+    known = reached(results) if pivots else set()
+    checks = tuple(pair for pair in pivots if _divisor(pair[0]) in known)
     return written(Function(name, about, shape, (), ()), results, checks, {})
 
 

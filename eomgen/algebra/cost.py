@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from eomgen.algebra.graph import Node, below
+from eomgen.algebra.graph import Node, reached
 from eomgen.program import OPERATORS
 
 WEIGHTS = dict.fromkeys(OPERATORS, 20) | {  # flops; a sine with its cosine counts as one pair
@@ -19,11 +19,12 @@ def operations(results: Iterable[Node], prepared: int = 0) -> int:
 
     prepared: bit set of leaves; what depends on these only is known before and counts nothing.
     """
-    return sum(
-        WEIGHTS.get(node.operator) or _system(node)
-        for node in below(results)
-        if node.leaves & ~prepared and WEIGHTS.get(node.operator) != 0
-    )
+    moving, total = ~prepared, 0
+    for node in reached(results):
+        weight = WEIGHTS.get(node.operator)
+        if weight != 0 and node.leaves & moving:
+            total += weight or _system(node)
+    return total
 
 
 def _system(node: Node) -> int:

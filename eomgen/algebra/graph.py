@@ -399,6 +399,11 @@ def below(nodes: Iterable[Node], stop: Callable[[Node], bool] | None = None) -> 
 
     Operands of a node that satisfies `stop` are not entered.
     """
+    return sorted(reached(nodes, stop), key=attrgetter("id"))
+
+
+def reached(nodes: Iterable[Node], stop: Callable[[Node], bool] | None = None) -> set[Node]:
+    """The nodes of `below` without an order."""
     found = {*nodes}
     stack = [*found]
     while stack:
@@ -408,7 +413,4 @@ def below(nodes: Iterable[Node], stop: Callable[[Node], bool] | None = None) -> 
                 if operand not in found:
                     found.add(operand)
                     stack.append(operand)
-    return sorted(found, key=_ID)
-
-
-_ID = attrgetter("id")
+    return found

@@ -1,7 +1,7 @@
 """A function as machines like it: powers as products, waves named, no dead values."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain, count
@@ -22,7 +22,8 @@ from eomgen.program import (
 
 UNROLLED = 64  # largest exponent written as products
 ONE = Number(Fraction(1))
-PLAIN = frozenset(("add", "subtract", "multiply", "divide"))  # these stay as they are
+PLAIN = frozenset(("add", "subtract", "multiply", "divide"))
+CHANGED = frozenset(("sin", "cos", "power", "negate"))  # all others stay as they are too
 Name = Callable[[Expression], Value]  # makes an assignment of its argument
 Atom = Number | Read | Value
 
@@ -93,23 +94,30 @@ def lower(function: Function) -> Function:
 
 def lowered(function: Function) -> Lowered:
     """`lower`, and what the statements are made of."""
-    statements: list[Statement] = []
     fresh = _fresh_names(function)
+    found: list[tuple[Statement, Content]] = []
+
+    def put(statement: Statement) -> None:
+        found.append((statement, content(operands(statement))))
 
     def name(expression: Expression) -> Value:
         value = Value(next(fresh))
-        statements.append(Assign(value.name, expression))
+        put(Assign(value.name, expression))
         return value
 
     for statement in function.statements:
-        statements.append(_lowered(statement, name))
+        inside = content(operands(statement))
+        if CHANGED.isdisjoint(inside.operators):
+            found.append((statement, inside))
+        else:
+            put(_lowered(statement, name))
     results = tuple(_simple(e, name) for e in function.results)
-    return _without_dead_values(replace(function, statements=tuple(statements), results=results))
+    return _without_dead_values(replace(function, results=results), found)
 
 
 def _fresh_names(function: Function) -> Iterator[str]:
     taken = {n for s in function.statements for n in defined(s)}
-    return (f"inner_{i}" for i in count(1) if f"inner_{i}" not in taken)
+    yield from (f"inner_{i}" for i in count(1) if f"inner_{i}" not in taken)
 
 
 def defined(statement: Statement) -> tuple[str, ...]:
@@ -136,33 +144,9 @@ def _map(statement: Statement, change: Callable[[Expression], Expression]) -> St
 def _lowered(statement: Statement, name: Name) -> Statement:
     """The statement with simple expressions; one that names a wave is left to do so."""
     match statement:
-        case Assign(_, expression) if _is_simple(expression):
-            return statement
         case Assign(_, Apply("sin" | "cos" as wave, (angle,))):
             return replace(statement, expression=Apply(wave, (_simple(angle, name),)))
     return _map(statement, lambda e: _simple(e, name))
-
-
-def _is_simple(expression: Expression) -> bool:
-    """Whether nothing in an expression is to be changed: no more than sums, products, signs."""
-    stack = [expression]
-    while stack:
-        part = stack.pop()
-        if isinstance(part, Apply):
-            if part.operator not in PLAIN and not _is_sign(part):
-                return False
-            stack += part.operands
-    return True
-
-
-def _is_sign(part: Apply) -> bool:
-    """Whether an operator is a minus before a value or a sum, product or quotient."""
-    if part.operator != "negate":
-        return False
-    (operand,) = part.operands
-    if isinstance(operand, Apply):
-        return operand.operator in PLAIN
-    return not isinstance(operand, Number)
 
 
 def _simple(expression: Expression, name: Name) -> Expression:
@@ -212,20 +196,20 @@ def atoms(expression: Expression) -> tuple[Atom, ...]:
     return content((expression,)).atoms
 
 
-def _without_dead_values(function: Function) -> Lowered:
+def _without_dead_values(
+    function: Function, statements: Sequence[tuple[Statement, Content]]
+) -> Lowered:
     """Backward over the statements: an assignment stays if something after it reads it."""
     results = content(function.results)
     alive = {*names(results.atoms)}
-    kept: list[tuple[Statement, Content]] = []
-    for statement in reversed(function.statements):
-        if isinstance(statement, Assign) and statement.name not in alive:
-            continue
-        inside = content(operands(statement))
-        kept.append((statement, inside))
-        alive.update(names(inside.atoms))
+    kept = []
+    for statement, inside in reversed(statements):
+        if not isinstance(statement, Assign) or statement.name in alive:
+            kept.append((statement, inside))
+            alive.update(names(inside.atoms))
     kept.reverse()
-    live = replace(function, statements=tuple(statement for statement, _ in kept))
-    return Lowered(live, tuple(inside for _, inside in kept), results)
+    live = replace(function, statements=tuple([statement for statement, _ in kept]))
+    return Lowered(live, tuple([inside for _, inside in kept]), results)
 
 
 def expressions(function: Function) -> tuple[Expression, ...]:
