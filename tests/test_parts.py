@@ -14,7 +14,7 @@ from eomgen.interpreter import FLOAT, call
 from eomgen.numerics.compiled import build
 from eomgen.program import IN_MOTION, Assign, Value, operands
 from eomgen.render.code_context import Code, Style, coded
-from eomgen.render.lowered import atoms, lowered
+from eomgen.render.lowered import content, lowered
 from eomgen.render.parts import divided
 from eomgen.render.routines import ROWS
 from eomgen.render.targets import TARGETS, render
@@ -115,11 +115,10 @@ def test_slots_carry_what_later_parts_read(limit):
         known = {v for v, slot in part.loads if held[slot] == v}
         assert len(known) == len(part.loads)
         for statement in part.statements:
-            read = {a for e in operands(statement) for a in atoms(e) if isinstance(a, Value)}
-            assert read <= known
+            assert {Value(name) for name in content(operands(statement)).values} <= known
             known |= {Value(statement.name)} if isinstance(statement, Assign) else set()
         for expression, slot in part.stores:
-            assert {a for a in atoms(expression) if isinstance(a, Value)} <= known
+            assert {Value(name) for name in content((expression,)).values} <= known
             (results if slot < len(function.results) else held)[slot] = expression
     assert tuple(results[i] for i in range(len(results))) == function.results
     live = {slot for slot in held}

@@ -7,10 +7,10 @@ from typing import Any
 import sympy as sp
 
 from eomgen.algebra.specialise import specialised, with_values
-from eomgen.program import OPERATORS, Expression, Program, Read, Solve, Value, Variable
+from eomgen.program import OPERATORS, Expression, Program, Read, Solve, Variable
 from eomgen.render.code import Names, expression, number
 from eomgen.render.dialects import C_FUNCTIONS, PLAIN, PYTHON, C, Dialect
-from eomgen.render.lowered import atoms
+from eomgen.render.lowered import content
 from eomgen.render.names import escaped, prefix
 from eomgen.render.routines import Routine, components, routine
 
@@ -118,7 +118,7 @@ def _constants(program: Program) -> tuple[Symbol, ...]:
 
 def _formula(tree: Expression, names: Names) -> str:
     """An expression over parameters as text; empty where it reads named values or is long."""
-    if any(isinstance(a, Value) for a in atoms(tree)):
+    if content((tree,)).values:
         return ""
     text = expression(tree, PLAIN, names)
     return text if len(text) <= LONGEST_FORMULA else ""

@@ -25,14 +25,14 @@ ONE = Number(Fraction(1))
 PLAIN = frozenset(("add", "subtract", "multiply", "divide"))
 CHANGED = frozenset(("sin", "cos", "power", "negate"))  # all others stay as they are too
 Name = Callable[[Expression], Value]  # makes an assignment of its argument
-Atom = Number | Read | Value
 
 
 @dataclass(frozen=True)
 class Content:
-    """What expressions are made of: atoms from left to right, and the operators between."""
+    """What is in expressions, from left to right: names of values, arguments, operators."""
 
-    atoms: tuple[Atom, ...]
+    values: tuple[str, ...]
+    reads: tuple[Read, ...]
     operators: tuple[str, ...]
 
 
@@ -45,32 +45,15 @@ class Lowered:
     results: Content
 
     @property
-    def atoms(self) -> tuple[Atom, ...]:
-        """All that is read, in order."""
-        return all_atoms((*self.contents, self.results))
-
-    @property
-    def operations(self) -> Counter[str]:
-        """How often each operator is applied; the loop of a `Solve` is not counted."""
-        counts = Counter(self.results.operators)
-        for each in self.contents:
-            counts.update(each.operators)
-        return counts
-
-
-def all_atoms(contents: Iterable[Content]) -> tuple[Atom, ...]:
-    """The atoms of several contents, one behind the other."""
-    return tuple(chain.from_iterable([each.atoms for each in contents]))
-
-
-def names(atoms: Iterable[Atom]) -> list[str]:
-    """The names of the values among atoms, in order."""
-    return [a.name for a in atoms if isinstance(a, Value)]
+    def content(self) -> Content:
+        """What is in the whole function."""
+        return merged((*self.contents, self.results))
 
 
 def content(expressions: Iterable[Expression]) -> Content:
-    """What expressions are made of."""
-    atoms: list[Atom] = []
+    """What is in some expressions."""
+    values: list[str] = []
+    reads: list[Read] = []
     operators: list[str] = []
     stack = [*expressions]
     stack.reverse()
@@ -78,10 +61,21 @@ def content(expressions: Iterable[Expression]) -> Content:
         part = stack.pop()
         if isinstance(part, Apply):
             operators.append(part.operator)
-            stack.extend(part.operands[::-1])
-        else:
-            atoms.append(part)
-    return Content(tuple(atoms), tuple(operators))
+            stack += part.operands[::-1]
+        elif isinstance(part, Value):
+            values.append(part.name)
+        elif isinstance(part, Read):
+            reads.append(part)
+    return Content(tuple(values), tuple(reads), tuple(operators))
+
+
+def merged(contents: Sequence[Content]) -> Content:
+    """Several contents, one behind the other."""
+    return Content(
+        tuple(chain.from_iterable([each.values for each in contents])),
+        tuple(chain.from_iterable([each.reads for each in contents])),
+        tuple(chain.from_iterable([each.operators for each in contents])),
+    )
 
 
 def lower(function: Function) -> Function:
@@ -191,22 +185,17 @@ def _product(base: Expression, exponent: int, name: Name) -> Expression:
     return Apply("multiply", (root, root))
 
 
-def atoms(expression: Expression) -> tuple[Atom, ...]:
-    """The numbers, arguments and values in an expression, from left to right."""
-    return content((expression,)).atoms
-
-
 def _without_dead_values(
     function: Function, statements: Sequence[tuple[Statement, Content]]
 ) -> Lowered:
     """Backward over the statements: an assignment stays if something after it reads it."""
     results = content(function.results)
-    alive = {*names(results.atoms)}
+    alive = {*results.values}
     kept = []
     for statement, inside in reversed(statements):
         if not isinstance(statement, Assign) or statement.name in alive:
             kept.append((statement, inside))
-            alive.update(names(inside.atoms))
+            alive.update(inside.values)
     kept.reverse()
     live = replace(function, statements=tuple([statement for statement, _ in kept]))
     return Lowered(live, tuple([inside for _, inside in kept]), results)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from heapq import heappop, heappush
 
 from eomgen.program import Expression, Statement, Value
-from eomgen.render.lowered import Atom, Content, Lowered, all_atoms, content, defined, names
+from eomgen.render.lowered import Content, Lowered, content, defined, merged
 
 Slots = tuple[tuple[Expression, int], ...]
 
@@ -23,7 +23,7 @@ class Part:
     statements: tuple[Statement, ...]
     loads: tuple[tuple[Value, int], ...]
     stores: Slots
-    atoms: tuple[Atom, ...]  # all that is read by the statements, in order, and by the stores
+    content: Content  # of the statements, in order, and of the results among the stores
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ def whole(lowered: Lowered) -> Part:
     """A function as the only part of itself."""
     function = lowered.function
     stores = tuple((e, i) for i, e in enumerate(function.results))
-    return Part(function.statements, (), stores, lowered.atoms)
+    return Part(function.statements, (), stores, lowered.content)
 
 
 def divided(lowered: Lowered, limit: int) -> Divided | None:
@@ -63,11 +63,11 @@ def _connected(
     made = [[n for s in chunk for n in defined(s)] for chunk in chunks]
     place = {name: i for i, found in enumerate(made) for name in found}
     stored = _results_by_part(results, place, len(chunks))
-    atoms = [
-        all_atoms((*inside, content([e for e, _ in kept])))
+    known = [
+        merged((*inside, content([e for e, _ in kept])))
         for inside, kept in zip(contents, stored, strict=True)
     ]
-    reads = [dict.fromkeys(names(found)) for found in atoms]
+    reads = [dict.fromkeys(found.values) for found in known]
     last = {name: i for i, found in enumerate(reads) for name in found}
     shelf = _Shelf(len(results))
     parts = []
@@ -75,7 +75,7 @@ def _connected(
         loads = [(name, shelf.slots[name]) for name in reads[i] if place[name] < i]
         shelf.clear(name for name, _ in loads if last[name] == i)
         stores = [(name, shelf.put(name)) for name in made[i] if last.get(name, i) > i]
-        parts.append(Part(chunk, _values(loads), _values(stores) + stored[i], atoms[i]))
+        parts.append(Part(chunk, _values(loads), _values(stores) + stored[i], known[i]))
     return Divided(tuple(parts), shelf.size)
 
 
@@ -111,6 +111,6 @@ def _results_by_part(
     """For each part the results that are known at its end, in the slots of their numbers."""
     stored: list[list[tuple[Expression, int]]] = [[] for _ in range(count)]
     for number, result in enumerate(results):
-        part = max((place[name] for name in names(content((result,)).atoms)), default=0)
+        part = max((place[name] for name in content((result,)).values), default=0)
         stored[part].append((result, number))
     return [tuple(slots) for slots in stored]

@@ -1,6 +1,7 @@
 """Functions of a program as text: arguments, steps and results, for a template to lay out."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from eomgen.program import (
@@ -19,7 +20,7 @@ from eomgen.program import (
 )
 from eomgen.render.code import Names, expression
 from eomgen.render.dialects import Dialect
-from eomgen.render.lowered import Atom, content, lowered, names
+from eomgen.render.lowered import Content, content, lowered
 from eomgen.render.names import escaped, prefix
 from eomgen.render.parts import Part, divided, whole
 
@@ -150,18 +151,18 @@ def routine(function: Function, program: Program, dialect: Dialect, given: Compo
     """A function of the program as text, every argument that it reads in a variable of its own."""
     found = lowered(function)
     everything = whole(found)
-    read = _survey(everything.atoms)
+    read = _survey(everything.content)
     own = _own_names(program, found.function)
     text = _Text(dialect, _names(read, given, dialect.reserved | own), given)
     cut = divided(found, dialect.longest)
     parts = (everything,) if cut is None else cut.parts
-    counts = found.operations
+    counts = Counter(everything.content.operators)
     return Routine(
         function.name,
         function.about,
         function.shape,
         text.body(everything, read) if cut is None else Body((), (), (), read.used),
-        () if cut is None else tuple(text.body(part, _survey(part.atoms)) for part in parts),
+        () if cut is None else tuple(text.body(part, _survey(part.content)) for part in parts),
         tuple(map(text.lanes, parts)) if dialect.lanes else (),
         0 if cut is None else cut.slots,
         len(function.results),
@@ -182,13 +183,13 @@ class _Survey:
     used: tuple[str, ...]  # which of `READ`
 
 
-def _survey(atoms: Iterable[Atom]) -> _Survey:
+def _survey(inside: Content) -> _Survey:
     """All that is read, each once."""
-    reads = {a for a in atoms if isinstance(a, Read)}
+    reads = {*inside.reads}
     found = {r.argument for r in reads}
     given = [r for r in reads if r.argument != "time"]
     given.sort(key=lambda r: (READ.index(r.argument), r.index))
-    values = dict.fromkeys(names(atoms))
+    values = dict.fromkeys(inside.values)
     return _Survey(tuple(given), tuple(values), tuple(a for a in READ if a in found))
 
 
@@ -265,7 +266,7 @@ class _Text:
                 read.append(Argument(self.names[name], WAVES, slot, name))
                 slot += 1
         inside = content([e for s in rest for e in operands(s)] + [e for e, _ in part.stores])
-        body = self.body(replace(part, statements=tuple(rest)), _survey(inside.atoms))
+        body = self.body(replace(part, statements=tuple(rest)), _survey(inside))
         return Lanes(tuple(waves), replace(body, arguments=body.arguments + tuple(read)))
 
     def steps(self, statements: Sequence[Statement]) -> Iterator[Step]:
@@ -289,8 +290,9 @@ class _Text:
     def step(self, statement: Statement) -> Step:
         """One statement."""
         match statement:
-            case Assign(name, Apply("sin" | "cos" as wave, (angle,))) if self.dialect.pairs:
-                return Step(WAVE_KINDS[wave], self.names[name], self.of(angle))
+            case Assign(name, tree) if self.dialect.pairs and _is_wave(statement):
+                assert isinstance(tree, Apply)
+                return Step(WAVE_KINDS[tree.operator], self.names[name], self.of(tree.operands[0]))
             case Assign(name, tree):
                 return Step("assign", self.names[name], self.of(tree))
             case RequirePositive(value, scale):
