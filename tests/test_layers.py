@@ -11,6 +11,7 @@ RECORDS = {"errors", "dimension", "model", "program", "__init__"}
 ALLOWED: dict[str, set[str]] = {
     "__init__": set(),
     "errors": set(),
+    "cache_folder": set(),
     "dimension": set(),
     "model": {"dimension"},
     "program": set(),
@@ -78,8 +79,8 @@ ALLOWED: dict[str, set[str]] = {
     | {"simulate_method", "simulate_setup", "stepping", "study", "wanted"},
     "charting": RECORDS | {"chart", "files", "spec", "study"},
     "cli_chart": {"charting", "cli_common", "errors", "files"},
-    "render": RECORDS | {"algebra", "latex_name", "mechanics", "integrators"},
-    "numerics": RECORDS | {"render", "interpreter", "integrators"},
+    "render": RECORDS | {"cache_folder", "algebra", "latex_name", "mechanics", "integrators"},
+    "numerics": RECORDS | {"cache_folder", "render", "interpreter", "integrators"},
     "states": RECORDS | {"mechanics"},
     "evaluate": RECORDS | {"mechanics", "compile", "interpreter", "render", "numerics", "states"},
     "files": {"errors"},

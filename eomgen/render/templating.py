@@ -2,6 +2,7 @@
 
 import re
 import traceback
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,8 @@ from typing import Any
 import jinja2
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
+from eomgen import __version__
+from eomgen.cache_folder import root
 from eomgen.errors import UsageError
 from eomgen.render.lines import named, rows, short_statements, statements, wrap
 
@@ -22,11 +25,32 @@ def shipped(folder: str) -> Path:
     return installed if installed.is_dir() else package.parent / folder
 
 
+class _Compiled(jinja2.FileSystemBytecodeCache):
+    """Compiled templates in the user's cache; where that cannot be written they are made again."""
+
+    def dump_bytecode(self, bucket: jinja2.bccache.Bucket) -> None:
+        """Keep a template."""
+        with suppress(OSError):
+            super().dump_bytecode(bucket)
+
+
+def _compiled() -> _Compiled | None:
+    """The cache of this version; None where there can be no folder for it."""
+    folder = root() / f"templates-{__version__}-{jinja2.__version__}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return None
+    return _Compiled(str(folder))
+
+
 class _Sandbox(ImmutableSandboxedEnvironment):
     """Templates see text and numbers: a SymPy object would take text to `eval`."""
 
     def is_safe_attribute(self, obj: object, attr: str, value: object) -> bool:
         """Whether a template may read `obj.attr`."""
+        if type(obj).__module__.startswith("eomgen.render."):  # a record of text and numbers
+            return not attr.startswith("_")
         return not type(obj).__module__.startswith("sympy") and super().is_safe_attribute(
             obj, attr, value
         )
@@ -97,6 +121,7 @@ def _made(user_folder: Path | None) -> jinja2.Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
         autoescape=False,
+        bytecode_cache=_compiled(),
     )
     made.filters.update(FILTERS)
     return made
