@@ -36,12 +36,8 @@ class Node:
     def __init__(
         self, graph: Graph, operator: str, operands: tuple[Node, ...], leaves: int, datum: Any
     ) -> None:
-        self.graph = graph
-        self.operator = operator
-        self.operands = operands
-        self.leaves = leaves
-        self.datum = datum
-        self.id = len(graph.nodes)
+        self.graph, self.operator, self.operands = graph, operator, operands
+        self.leaves, self.datum, self.id = leaves, datum, len(graph.nodes)
         graph.nodes.append(self)
 
     def __add__(self, other: Node | Exact) -> Node:
@@ -277,9 +273,9 @@ def negate(a: Node) -> Node:
 def multiply(a: Node, b: Node) -> Node:
     """A product; the sign goes outside, numeric coefficients meet."""
     if a.operator == "number":
-        return _times(a, b)
+        return a if a is a.graph.zero else _scale(a.datum, b)
     if b.operator == "number":
-        return _times(b, a)
+        return b if b is a.graph.zero else _scale(b.datum, a)
     if a.operator == "negate":
         return negate(multiply(a.operands[0], b))
     if b.operator == "negate":
@@ -293,13 +289,6 @@ def multiply(a: Node, b: Node) -> Node:
         if x is not a and y is not b:
             return _scale(c * d, multiply(x, y))
     return binary("multiply", a, b) if a.id < b.id else binary("multiply", b, a)
-
-
-def _times(number: Node, a: Node) -> Node:
-    """The product of a number, often 0 or 1, and a value."""
-    if number is number.graph.zero:
-        return number
-    return a if number is number.graph.one else _scale(number.datum, a)
 
 
 def _cancelled(a: Node, b: Node) -> Node | None:
@@ -399,18 +388,12 @@ def below(nodes: Iterable[Node], stop: Callable[[Node], bool] | None = None) -> 
 
     Operands of a node that satisfies `stop` are not entered.
     """
-    return sorted(reached(nodes, stop), key=attrgetter("id"))
-
-
-def reached(nodes: Iterable[Node], stop: Callable[[Node], bool] | None = None) -> set[Node]:
-    """The nodes of `below` without an order."""
     found = {*nodes}
     stack = [*found]
     while stack:
         node = stack.pop()
         if stop is None or not stop(node):
-            for operand in node.operands:
-                if operand not in found:
-                    found.add(operand)
-                    stack.append(operand)
-    return found
+            new = [operand for operand in node.operands if operand not in found]
+            found.update(new)
+            stack += new
+    return sorted(found, key=attrgetter("id"))

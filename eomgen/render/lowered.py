@@ -7,6 +7,7 @@ from fractions import Fraction
 from itertools import chain, count
 
 from eomgen.program import (
+    Alike,
     Apply,
     Assign,
     Expression,
@@ -17,6 +18,7 @@ from eomgen.program import (
     Solve,
     Statement,
     Value,
+    in_lane,
     operands,
 )
 
@@ -78,6 +80,12 @@ def merged(contents: Sequence[Content]) -> Content:
     )
 
 
+def surveyed(function: Function) -> Lowered:
+    """What is in a function that is as machines like it."""
+    contents = [content(operands(statement)) for statement in function.statements]
+    return Lowered(function, tuple(contents), content(function.results))
+
+
 def lower(function: Function) -> Function:
     """The same function without integer or half-integer powers and without unused values.
 
@@ -121,6 +129,8 @@ def defined(statement: Statement) -> tuple[str, ...]:
             return (name,)
         case Solve(names, _, _):
             return names
+        case Alike(lanes, _, _, kept):
+            return tuple(in_lane(name, lane) for name in kept for lane in range(lanes))
     return ()
 
 
@@ -133,6 +143,10 @@ def _map(statement: Statement, change: Callable[[Expression], Expression]) -> St
             return RequirePositive(value, change(scale))
         case Solve(names, matrix, right):
             return Solve(names, tuple(map(change, matrix)), tuple(map(change, right)))
+        case Alike(_, given, _, _):
+            # its own assignments are sums, products, quotients and roots
+            entries = tuple((name, tuple(map(change, each))) for name, each in given)
+            return replace(statement, given=entries)
 
 
 def _lowered(statement: Statement, name: Name) -> Statement:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
 
-from eomgen.program import Expression, Statement, Value
+from eomgen.program import Alike, Expression, Statement, Value
 from eomgen.render.lowered import Content, Lowered, content, defined, merged
 
 Slots = tuple[tuple[Expression, int], ...]
@@ -42,9 +42,12 @@ def whole(lowered: Lowered) -> Part:
 
 
 def divided(lowered: Lowered, limit: int) -> Divided | None:
-    """The parts of a function with more statements than `limit`, of half of it; else None."""
+    """The parts of a function with more statements than `limit`, of half of it; else None.
+
+    Loops over lanes have made a function short.
+    """
     statements = lowered.function.statements
-    if len(statements) <= limit:
+    if len(statements) <= limit or any(isinstance(s, Alike) for s in statements):
         return None
     count = -(-2 * len(statements) // limit)
     size = -(-len(statements) // count)

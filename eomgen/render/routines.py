@@ -1,16 +1,20 @@
 """Functions of a program as text: arguments, steps and results, for a template to lay out."""
 
+from __future__ import annotations
+
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from eomgen.algebra.unroll import unrolled
 from eomgen.program import (
-    ARGUMENTS,
     OPERATORS,
+    Alike,
     Apply,
     Assign,
     Expression,
     Function,
+    Number,
     Program,
     Read,
     RequirePositive,
@@ -20,12 +24,12 @@ from eomgen.program import (
 )
 from eomgen.render.code import Names, expression
 from eomgen.render.dialects import Dialect
-from eomgen.render.lowered import Content, content, lowered
-from eomgen.render.names import escaped, prefix
+from eomgen.render.grouped import apart
+from eomgen.render.lowered import content, lowered, operations, surveyed
+from eomgen.render.naming import LANE, Components, Survey, names_of, own_names, survey
 from eomgen.render.parts import Part, divided, whole
 
 COUNTED = {"add": "+", "subtract": "-", "negate": "-", "multiply": "*", "divide": "/"}
-READ = (*ARGUMENTS, "constants")
 ROWS = ("state", "accelerations", "inputs")  # what differs between the states of a batch
 WAVE_KINDS = {"sin": "sine", "cos": "cosine"}
 WORK = "work"  # the array of values that cross between the parts of a function
@@ -47,11 +51,20 @@ class Argument:
 
 
 @dataclass(frozen=True)
+class Given:
+    """An array that a loop over lanes reads; `fixed`: of literals."""
+
+    name: str
+    entries: tuple[str, ...]
+    fixed: bool
+
+
+@dataclass(frozen=True)
 class Step:
     """One statement; `kind` says which fields are used.
 
     `assign`; `sine` or `cosine` of an expression, `pair`: both, the cosine called `other`;
-    `require`; `solve`.
+    `require`; `solve`; `alike`: steps in a loop over lanes.
     """
 
     kind: str
@@ -62,7 +75,10 @@ class Step:
     values: tuple[tuple[str, int], ...] = ()  # of a solve: the names that are read, and where
     matrix: tuple[str, ...] = ()
     right: tuple[str, ...] = ()
-    size: int = 0  # of a solve: the number of equations
+    size: int = 0  # of a solve: the number of equations; of a loop that of lanes
+    given: tuple[Given, ...] = ()  # of a loop
+    steps: tuple[Step, ...] = ()  # of a loop; of kind `assign`, or `keep` in an array
+    kept: tuple[str, ...] = ()  # of a loop: arrays that it fills
 
 
 @dataclass(frozen=True)
@@ -73,6 +89,11 @@ class Body:
     steps: tuple[Step, ...]
     results: tuple[tuple[int, str], ...]  # where each goes, and what
     uses: tuple[str, ...]  # which of `READ` and `WORK` are read
+
+    @property
+    def can_fail(self) -> bool:
+        """Whether a pivot is checked."""
+        return any(step.kind in ("require", "solve") for step in self.steps)
 
 
 @dataclass(frozen=True)
@@ -125,92 +146,35 @@ class Routine:
     can_fail: bool  # a pivot is checked
 
 
-@dataclass(frozen=True)
-class Components:
-    """The names of the components of every argument: of the specification, of the interface."""
-
-    labels: dict[str, list[str]]
-    members: dict[str, tuple[str, ...]]
-
-
-def components(program: Program, dialect: Dialect) -> Components:
-    """The names of the components of a program's arguments."""
-    prepared = program.prepare.results if program.prepare else ()
-    labels = {
-        "time": ["t"],
-        "state": [v.name for v in program.coordinates + program.speeds],
-        "accelerations": [f"{v.name}'" for v in program.speeds],
-        "inputs": [v.name for v in program.inputs],
-        "parameters": [v.name for v in program.parameters],
-        "constants": [f"c{i}" for i in range(len(prepared))],
-    }
-    return Components(labels, {k: escaped(v, dialect.reserved_members) for k, v in labels.items()})
-
-
 def routine(function: Function, program: Program, dialect: Dialect, given: Components) -> Routine:
     """A function of the program as text, every argument that it reads in a variable of its own."""
-    found = lowered(function)
+    plain = lowered(function if dialect.loops else unrolled(function))
+    short, direct = apart(plain.function, given.groups)
+    found = surveyed(short) if direct else plain
     everything = whole(found)
-    read = _survey(everything.content)
-    own = _own_names(program, found.function)
-    text = _Text(dialect, _names(read, given, dialect.reserved | own), given)
+    read = survey(everything.content)
+    if direct and "constants" not in read.used:
+        read = replace(read, used=(*read.used, "constants"))
+    names = names_of(short, read, given, dialect.reserved | own_names(program, short))
+    names |= {name: f"m->c{first}[{LANE}]" for name, first in direct.items()}
+    text = _Text(dialect, names, given)
     cut = divided(found, dialect.longest)
     parts = (everything,) if cut is None else cut.parts
-    counts = Counter(everything.content.operators)
     return Routine(
         function.name,
         function.about,
         function.shape,
         text.body(everything, read) if cut is None else Body((), (), (), read.used),
-        () if cut is None else tuple(text.body(part, _survey(part.content)) for part in parts),
+        () if cut is None else tuple(text.body(part, survey(part.content)) for part in parts),
         tuple(map(text.lanes, parts)) if dialect.lanes else (),
         0 if cut is None else cut.slots,
         len(function.results),
-        frozenset(counts),
-        _counted(found.function, counts),
+        frozenset(everything.content.operators),
+        _counted(plain.function, Counter(everything.content.operators)),
         function.arguments,
         read.used,
         _checks_pivots(function),
     )
-
-
-@dataclass(frozen=True)
-class _Survey:
-    """What expressions read: arguments by declaration, without the time, and values."""
-
-    reads: tuple[Read, ...]
-    values: tuple[str, ...]
-    used: tuple[str, ...]  # which of `READ`
-
-
-def _survey(inside: Content) -> _Survey:
-    """All that is read, each once."""
-    reads = {*inside.reads}
-    found = {r.argument for r in reads}
-    given = [r for r in reads if r.argument != "time"]
-    given.sort(key=lambda r: (READ.index(r.argument), r.index))
-    values = dict.fromkeys(inside.values)
-    return _Survey(tuple(given), tuple(values), tuple(a for a in READ if a in found))
-
-
-def _names(
-    found: _Survey, given: Components, reserved: frozenset[str]
-) -> dict[Expression | str, str]:
-    """The variable of everything that a function reads or computes."""
-    labels = [given.labels[r.argument][r.index] for r in found.reads]
-    codes = escaped([*labels, *found.values], reserved)
-    read: list[Expression | str] = [*found.reads, *found.values]
-    return dict(zip(read, codes, strict=True)) | {Read("time", 0): "t"}
-
-
-def _own_names(program: Program, function: Function) -> frozenset[str]:
-    """Names that our templates give to types, solvers and their arrays."""
-    own = {f"{prefix(program.name)}_{kind}" for kind in ("real", "params", "model", "status")}
-    for statement in function.statements:
-        if isinstance(statement, Solve):
-            place = statement.names[0]
-            own |= {f"matrix_of_{place}", f"solution_of_{place}", f"solve_{statement.size}"}
-    return frozenset(own)
 
 
 def _checks_pivots(function: Function) -> bool:
@@ -235,7 +199,7 @@ class _Text:
         label, member = self.given.labels[source][index], self.given.members[source][index]
         return Argument(self.names[read], source, index, label, member)
 
-    def body(self, part: Part, found: _Survey) -> Body:
+    def body(self, part: Part, found: Survey) -> Body:
         """The statements of a function, or of a part of one, which read what was found."""
         arguments = tuple(map(self.argument, found.reads))
         loads = tuple(Argument(self.names[v.name], WORK, slot, v.name) for v, slot in part.loads)
@@ -266,7 +230,7 @@ class _Text:
                 read.append(Argument(self.names[name], WAVES, slot, name))
                 slot += 1
         inside = content([e for s in rest for e in operands(s)] + [e for e, _ in part.stores])
-        body = self.body(replace(part, statements=tuple(rest)), _survey(inside))
+        body = self.body(replace(part, statements=tuple(rest)), survey(inside))
         return Lanes(tuple(waves), replace(body, arguments=body.arguments + tuple(read)))
 
     def steps(self, statements: Sequence[Statement]) -> Iterator[Step]:
@@ -287,6 +251,20 @@ class _Text:
         if waiting is not None:
             yield self.step(waiting)
 
+    def bare(self, array: str) -> str:
+        """An array without the lane."""
+        return self.names[array].removesuffix(f"[{LANE}]")
+
+    def array(self, name: str, entries: Sequence[Expression]) -> Given:
+        """What a loop over lanes reads."""
+        fixed = all(isinstance(e, Number) for e in entries)
+        return Given(self.bare(name), tuple(map(self.of, entries)), fixed)
+
+    def kept(self, statement: Assign, kept: Sequence[str]) -> Step:
+        """An assignment in a loop over lanes."""
+        kind = "keep" if statement.name in kept else "assign"
+        return Step(kind, self.names[statement.name], self.of(statement.expression))
+
     def step(self, statement: Statement) -> Step:
         """One statement."""
         match statement:
@@ -297,6 +275,14 @@ class _Text:
                 return Step("assign", self.names[name], self.of(tree))
             case RequirePositive(value, scale):
                 return Step("require", self.names[value.name], scale=self.of(scale))
+            case Alike(lanes, given, statements, kept):
+                return Step(
+                    "alike",
+                    size=lanes,
+                    given=tuple(self.array(name, entries) for name, entries in given),
+                    steps=tuple(self.kept(s, kept) for s in statements),
+                    kept=tuple(self.bare(name) for name in kept),
+                )
             case Solve(unknowns, matrix, right):
                 return Step(
                     "solve",
@@ -328,11 +314,13 @@ def _pair(first: Statement, second: Statement) -> tuple[str, str, Expression] | 
     return None
 
 
-def _counted(function: Function, applied: Mapping[str, int]) -> str:
+def _counted(function: Function, applied: Counter[str]) -> str:
     """Operations in the order of `OPERATORS`; a system that a loop solves is named by its size."""
     counts: dict[str, int] = {}
+    flat = unrolled(function)
+    applied = applied if flat is function else operations(flat)
     for operator in OPERATORS:
-        if operator in applied and operator != "pi":
+        if applied[operator] and operator != "pi":
             sign = COUNTED.get(operator, operator)
             counts[sign] = counts.get(sign, 0) + applied[operator]
     parts = [f"{n} {sign}" for sign, n in counts.items()]
