@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
-from eomgen.algebra import fixed
+from eomgen.algebra import cancellation, fixed
 from eomgen.algebra.arithmetic import evaluate, mpmath_arithmetic
 from eomgen.algebra.assemble import assemble, written
 from eomgen.algebra.graph import Graph, Node, below
@@ -60,7 +60,12 @@ def _target(program: Program, free: tuple[Variable, ...]) -> Target:
         for i, p in enumerate(program.parameters)
     }
     count = len(free)
-    build = fixed.builders(lambda node: not node.leaves >> count)
+    positive = [places[p.name] for p in free if p.value is not None and p.value.is_positive]
+
+    def is_fixed(node: Node) -> bool:
+        return not node.leaves >> count
+
+    build = cancellation.builders(fixed.builders(is_fixed), is_fixed, positive)
     return Target(graph, build, given)
 
 
