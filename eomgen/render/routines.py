@@ -209,6 +209,11 @@ def _own_names(program: Program, function: Function) -> frozenset[str]:
     return frozenset(own)
 
 
+def variables(lowered: Function, program: Program, dialect: Dialect) -> Names:
+    """The variable of everything that a lowered function reads or computes, as `routine` has it."""
+    return _names(lowered, _survey(expressions(lowered)), program, dialect)
+
+
 def _checks_pivots(function: Function) -> bool:
     return any(isinstance(s, RequirePositive | Solve) for s in function.statements)
 
