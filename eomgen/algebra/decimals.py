@@ -62,9 +62,10 @@ def _number(value: Any) -> Any:
     return Decimal(value) if isinstance(value, int | float) else value
 
 
-def _elementwise(scalar: Callable[..., Decimal], count: int) -> Callable[..., Any]:
+def _elementwise(scalar: Any, count: int) -> Callable[..., Any]:
     """A function of decimals over arrays of them."""
-    return np.frompyfunc(scalar, count, 1)
+    made: Callable[..., Any] = np.frompyfunc(scalar, count, 1)
+    return made
 
 
 class _Functions:
@@ -100,6 +101,9 @@ class _Functions:
         return Decimal(mpmath.nstr(value, self.digits, strip_zeros=False))
 
 
-def floats(values: Any) -> Any:
-    """Decimals, one or an array of them, as doubles."""
-    return np.asarray(values, float)
+def exactly(values: Any) -> Any:
+    """Doubles, one or an array of them, as decimals."""
+    return _EXACTLY(values)
+
+
+_EXACTLY = _elementwise(lambda value: Decimal(float(value)), 1)

@@ -95,7 +95,7 @@ def total(graph_of: Node, terms: Iterable[Node]) -> Node:
     """The sum of terms."""
     result = graph_of.graph.zero
     for term in terms:
-        result = subtract(result, term.operands[0]) if term.operator == "negate" else add(
-            result, term
+        result = (
+            subtract(result, term.operands[0]) if term.operator == "negate" else add(result, term)
         )
     return result

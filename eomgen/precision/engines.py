@@ -11,7 +11,7 @@ import numpy as np
 
 from eomgen import interpreter
 from eomgen.algebra.arithmetic import NUMPY, Arithmetic
-from eomgen.errors import CheckError, UsageError
+from eomgen.errors import UsageError
 from eomgen.numerics import compiled
 from eomgen.precision.records import EPSILONS, Array, Sampled
 from eomgen.program import Program
@@ -56,17 +56,11 @@ def engines(
 
 def _compiled(shipped: Program, library: compiled.Compiled, sampled: Sampled) -> Measured:
     """A function of the compiled C, state by state."""
+    model = library.model(list(sampled.parameters))
 
     def results(name: str) -> Array:
-        size = len(shipped.function(name).results)
-        found = np.full((size, sampled.count), np.nan)
-        for k in range(sampled.count):
-            at = (sampled.state[:, k], sampled.inputs[:, k], sampled.parameters)
-            try:
-                found[:, k] = library.call(name, sampled.time[k], *at).ravel()
-            except CheckError:  # no value at this state
-                continue
-        return found
+        at = (sampled.state.T, sampled.inputs.T)
+        return library.each(name, sampled.time, *at, model=model).T.astype(float)
 
     return results
 

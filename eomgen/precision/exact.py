@@ -82,7 +82,7 @@ class Bench:
     def run(self, function: Function, first: int, last: int) -> tuple[dict[str, Any], list[Any]]:
         """(values by name, results) at some states."""
         columns = self.sampled.columns(first, last)
-        given = {name: [_decimal(v) for v in rows] for name, rows in columns.items()}
+        given = {name: [decimals.exactly(v) for v in rows] for name, rows in columns.items()}
         with self.arithmetic.quiet():
             memory = interpreter.Memory({**given, "constants": self.prepared}, self.arithmetic)
             for statement in function.statements:
@@ -105,11 +105,6 @@ class Bench:
                     f"{function.name} as it is written and as it was derived differ, relative "
                     f"error {error:.1e}: this is a defect of eomgen"
                 )
-
-
-def _decimal(value: Any) -> Any:
-    """A number or an array of doubles as decimals, exactly."""
-    return np.frompyfunc(lambda v: decimals.Decimal(float(v)), 1, 1)(value)
 
 
 def _spread(value: Any, count: int) -> Array:

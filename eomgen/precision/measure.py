@@ -5,10 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from eomgen.errors import CheckError
-from eomgen.precision import errors, statements, states
+from eomgen.evaluate import depends_on_time
+from eomgen.precision import statements, states
 from eomgen.precision.engines import engines
-from eomgen.precision.exact import Bench, Exact
-from eomgen.precision.records import Array, FunctionErrors, Report, Sampled
+from eomgen.precision.errors import ON_CONSTRAINTS, ZERO, of_function, scales_of
+from eomgen.precision.exact import Bench
+from eomgen.precision.records import Array, FunctionErrors, Report
+from eomgen.precision.statements import Traced
 from eomgen.program import Program
 from eomgen.render.code_context import coded
 from eomgen.render.lowered import lower, operations
@@ -38,11 +41,16 @@ def of(study: Study) -> Report:
     bench = Bench(shipped, sampled)
     bench.prove(study.program)
     said, measured = engines(shipped, files, sampled)
-    traced = {"prepare": found} if (found := bench.prepare()) else {}
+    traced: dict[str, Traced] = {}
+    if (prepared := bench.prepare()) is not None:
+        traced["prepare"] = Traced(prepared, scales_of("prepare", prepared.results, ZERO))
+    zero = ZERO if study.links is None else ON_CONSTRAINTS
     rows = []
     for function in (f for f in shipped.functions if f.results):
-        exact = traced[function.name] = bench.traced(function)
-        rows.append(errors.of_function(function.name, exact, measured, bench.arithmetic))
+        exact = bench.traced(function)
+        scales = scales_of(function.name, exact.results, zero)
+        traced[function.name] = Traced(exact, scales)
+        rows.append(of_function(function.name, exact, measured, bench.arithmetic, scales))
     if not any(r.states for r in rows):
         raise CheckError("the code has no value at any state; give `range` for the coordinates")
     condition = _condition(shipped, traced)
@@ -50,6 +58,7 @@ def of(study: Study) -> Report:
         sampled=sampled,
         names=tuple(v.name for v in (*shipped.coordinates, *shipped.speeds)),
         inputs=tuple(v.name for v in shipped.inputs),
+        timed=depends_on_time(shipped),
         engine=said,
         file=file,
         functions=tuple(rows),
@@ -66,7 +75,7 @@ def _affordable(shipped: Program) -> int:
     return min(STATES, max(FEWEST, AFFORDED // max(cost, 1)))
 
 
-def _condition(shipped: Program, traced: dict[str, Exact]) -> float | None:
+def _condition(shipped: Program, traced: dict[str, Traced]) -> float | None:
     """The worst condition number of M with its rows and columns scaled to ones on the diagonal.
 
     Source: van der Sluis, Condition numbers and equilibration of matrices (1969): no other
@@ -75,7 +84,7 @@ def _condition(shipped: Program, traced: dict[str, Exact]) -> float | None:
     if "mass_matrix" not in traced:
         return None
     size = shipped.function("mass_matrix").shape[0]
-    matrices = traced["mass_matrix"].results.astype(float).T.reshape(-1, size, size)
+    matrices = traced["mass_matrix"].exact.results.astype(float).T.reshape(-1, size, size)
     roots: Array = np.sqrt(np.diagonal(matrices, axis1=1, axis2=2))
     usable = np.isfinite(matrices).all(axis=(1, 2)) & (roots > 0).all(axis=1)
     if not usable.any():

@@ -69,7 +69,7 @@ class FunctionErrors:
 
 @dataclass(frozen=True)
 class StatementErrors:
-    """Local errors in float of one statement, relative to its value."""
+    """Local errors in float of one statement: relative to its value, as far as results miss it."""
 
     functions: tuple[str, ...]  # that hold it
     line: int  # of the C file
@@ -91,6 +91,7 @@ class Report:
     sampled: Sampled
     names: tuple[str, ...]  # of the components of the state
     inputs: tuple[str, ...]
+    timed: bool  # whether anything depends on the time
     engine: str  # what computed in float and double
     file: str  # of the C
     functions: tuple[FunctionErrors, ...]

@@ -67,11 +67,12 @@ def _notes(report: Report) -> list[str]:
 
 def _statement(report: Report, number: int, each: StatementErrors) -> list[str]:
     places = ", ".join(each.functions)
+    where = _state(report, each.at)
     return [
         f"{number:>2}. {each.worst:.1e} (median {each.median:.1e}, {each.amplification:.0f} eps) "
         f"in {places}",
         f"      {each.line}: {each.source}",
-        f"      at {_state(report, each.at)}",
+        f"      at {where}" if each.functions != ("prepare",) else "      of the parameters alone",
     ]
 
 
@@ -85,8 +86,10 @@ def _state(report: Report, at: int) -> str:
 def _numbers(report: Report, at: int) -> dict[str, float]:
     """Everything that a state is, by name."""
     sampled = report.sampled
-    values = [*sampled.state[:, at], *sampled.inputs[:, at], sampled.time[at]]
-    names = (*report.names, *report.inputs, "t")
+    values = [*sampled.state[:, at], *sampled.inputs[:, at]]
+    names = report.names + report.inputs
+    if report.timed:
+        names, values = (*names, "t"), [*values, sampled.time[at]]
     return dict(zip(names, map(float, values), strict=True))
 
 

@@ -1,23 +1,27 @@
-"""The local error of every statement in float: what it loses itself, of exact operands.
+"""The local error of every statement in float: what it loses itself, and how much of it arrives.
 
 Its operands are the fifty-digit values rounded to float, and its result is compared with its own
-fifty-digit value: nothing is inherited from earlier statements, and cancellation shows.
+fifty-digit value: nothing is inherited from earlier statements, and cancellation shows. A value
+that passes zero, or that vanishes on the constraints, loses digits that no result misses: counted
+is the error relative to the value or that which reaches the results, whichever is smaller.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from eomgen import interpreter
+from eomgen.algebra.arithmetic import NUMPY, Arithmetic
 from eomgen.precision.engines import arrays_of
 from eomgen.precision.exact import Exact
+from eomgen.precision.reach import Sweep, reach, seeds
 from eomgen.precision.records import Array, Sampled, StatementErrors
-from eomgen.program import Apply, Assign, Program, Solve, Value
+from eomgen.program import Apply, Assign, Expression, Program, Read, Solve, Value
 from eomgen.render.dialects import C
 from eomgen.render.names import prefix
 from eomgen.render.routines import variables
@@ -25,6 +29,15 @@ from eomgen.render.routines import variables
 SHOWN = 10
 SMALLEST = 2.0**-126  # of float, but for subnormal numbers
 FLOAT = arrays_of("float")
+Reaches = Mapping[Expression, Array]
+
+
+@dataclass(frozen=True)
+class Traced:
+    """A function in fifty digits, and what errors of its results are compared with."""
+
+    exact: Exact
+    scales: Array  # (number of results, N)
 
 
 @dataclass(frozen=True)
@@ -36,68 +49,122 @@ class _Local:
     worst: float
     median: float
     at: int
+    whole: float  # of all errors, by which the same statement of another function is known
 
 
 def worst_of(
-    shipped: Program, traced: dict[str, Exact], sampled: Sampled, text: str
+    shipped: Program, traced: Mapping[str, Traced], sampled: Sampled, text: str
 ) -> tuple[StatementErrors, ...]:
     """The `SHOWN` statements with the largest local errors, worst first.
 
     traced: functions by name, and `prepare`; text: the C. Statements that functions share count
     once.
     """
-    found = [e for name, exact in traced.items() for e in _of_function(shipped, name, exact, sampled)]
+    sweeps = {name: _adjoints(each, sampled) for name, each in traced.items() if name != "prepare"}
+    if "prepare" in traced:
+        sweeps["prepare"] = _of_constants(traced["prepare"], sampled, list(sweeps.values()))
+    found = [
+        local
+        for name, each in traced.items()
+        for local in _of_function(shipped, name, each, (sampled, sweeps[name]))
+    ]
     found.sort(key=lambda e: (-e.worst, -e.median))
-    alike: dict[tuple[float, float, int], list[_Local]] = {}
-    for each in found:
-        alike.setdefault((each.worst, each.median, each.at), []).append(each)
+    alike: dict[float, list[_Local]] = {}
+    for each in (e for e in found if e.worst > 0):
+        alike.setdefault(each.whole, []).append(each)
     sections = _sections(text, shipped)
     return tuple(_shown(same, sections, text) for same in list(alike.values())[:SHOWN])
 
 
+def _arguments(name: str, exact: Exact, sampled: Sampled) -> dict[str, Any]:
+    """What a function reads."""
+    if name == "prepare":
+        return {"parameters": list(sampled.parameters)}
+    return {**sampled.columns(), "constants": list(exact.constants)}
+
+
+def _adjoints(traced: Traced, sampled: Sampled) -> Reaches:
+    """How far each value reaches into the results of its function, (N,) each."""
+    memory = _memory(traced.exact, _arguments("", traced.exact, sampled), NUMPY)
+    adjoints = Sweep(memory).back(traced.exact.function, seeds(traced.scales))
+    size = len(traced.scales)
+    return {e: reach(a, size) for e, a in adjoints.items()}
+
+
+def _of_constants(traced: Traced, sampled: Sampled, functions: list[Reaches]) -> Reaches:
+    """How far each value of `prepare` reaches into the results of any function, (1,) each."""
+    count = len(traced.exact.constants)
+    largest = np.zeros(count)
+    for reaches in functions:
+        for i in range(count):
+            found = reaches.get(Read("constants", i), np.zeros(1))
+            largest[i] = max(largest[i], np.nanmax(found, initial=0.0))
+    memory = _memory(traced.exact, _arguments("prepare", traced.exact, sampled), NUMPY)
+    started = [np.eye(count)[:, i : i + 1] * largest[i] for i in range(count)]
+    adjoints = Sweep(memory).back(traced.exact.function, started)
+    made: dict[Expression, Array] = {Read("constants", i): largest[i : i + 1] for i in range(count)}
+    return made | {e: np.abs(a).max(axis=0) for e, a in adjoints.items()}
+
+
+def _memory(
+    exact: Exact, arguments: Mapping[str, Any], arithmetic: Arithmetic
+) -> interpreter.Memory:
+    """All values of a function, rounded to those of an arithmetic."""
+    memory = interpreter.Memory(arguments, arithmetic)
+    memory.values = {name: arithmetic.number(v) for name, v in exact.values.items()}
+    return memory
+
+
 def _of_function(
-    shipped: Program, name: str, exact: Exact, sampled: Sampled
+    shipped: Program, name: str, traced: Traced, beside: tuple[Sampled, Reaches]
 ) -> Iterator[_Local]:
     """The local errors of a function's statements and of its results."""
+    exact, (sampled, reaches) = traced.exact, beside
     names = variables(exact.function, shipped, C)
-    columns = sampled.columns() if name != "prepare" else {"parameters": sampled.parameters}
+    nowhere = np.zeros(1)
+
+    def local(value: str, found: Any) -> _Local:
+        truth, reached = exact.values[value], reaches.get(Value(value), nowhere)
+        return _local(name, names[Value(value)], (found, truth, reached))
+
+    def last(index: int, found: Any) -> _Local:
+        truth = exact.results[index].astype(float)
+        if name == "prepare":
+            reached = reaches[Read("constants", index)]
+            return _local(name, f"m->c{index}", (found, truth, reached))
+        return _local(name, f"result[{index}]", (found, truth, 1 / traced.scales[index]))
+
     with FLOAT.quiet():
-        memory = interpreter.Memory({**columns, "constants": exact.constants}, FLOAT)
-        rounded = {v: FLOAT.number(a) for v, a in exact.values.items()}
-        memory.values = dict(rounded)
+        memory = _memory(exact, _arguments(name, exact, sampled), FLOAT)
+        rounded = dict(memory.values)
         for statement in exact.function.statements:
             match statement:
                 case Assign(value, Apply() as expression):
-                    errors = _errors(memory.value(expression), exact.values[value])
-                    yield _local(name, names[Value(value)], errors)
+                    yield local(value, memory.value(expression))
                 case Solve(values, _, _):
                     memory.execute(statement)
-                    for value in (v for v in values if Value(v) in names):
-                        errors = _errors(memory.values[value], exact.values[value])
-                        yield _local(name, names[Value(value)], errors)
-                    memory.values = dict(rounded)
+                    solution, memory.values = memory.values, dict(rounded)
+                    yield from (local(v, solution[v]) for v in values if Value(v) in names)
         for index, result in enumerate(exact.function.results):
             if isinstance(result, Apply):
-                truth = exact.results[index].astype(float)
-                target = f"m->c{index}" if name == "prepare" else f"result[{index}]"
-                yield _local(name, target, _errors(memory.value(result), truth))
+                yield last(index, memory.value(result))
 
 
-def _errors(found: Any, truth: Array) -> Array:
-    """|found - truth| / |truth|, at most 1: no digit is right; what float cannot hold is 0."""
-    value = np.asarray(found, float)
-    nothing = (np.abs(truth) < SMALLEST) & (np.abs(value) < SMALLEST)
-    relative = np.abs(value - truth) / np.where(truth != 0, np.abs(truth), SMALLEST)
-    errors: Array = np.where(nothing, 0.0, np.minimum(relative, 1.0))
-    return errors
+def _local(function: str, target: str, numbers: tuple[Any, Array, Array]) -> _Local:
+    """The errors of a place; numbers: what float makes of it, the truth, how far errors reach.
 
-
-def _local(function: str, target: str, errors: Array) -> _Local:
+    Counted is the error relative to the value, at most 1, or what reaches the results if less.
+    """
+    found, truth, reached = numbers
+    gap = np.abs(np.asarray(found, float) - truth)
+    relative = np.minimum(gap / np.maximum(np.abs(truth), SMALLEST), 1.0)
+    errors = np.minimum(relative, gap * reached)
     usable = np.flatnonzero(np.isfinite(errors))
     if not len(usable):
-        return _Local(function, target, 0.0, 0.0, 0)
+        return _Local(function, target, 0.0, 0.0, 0, 0.0)
     at = int(usable[np.argmax(errors[usable])])
-    return _Local(function, target, float(errors[at]), float(np.median(errors[usable])), at)
+    worst, median = float(errors[at]), float(np.median(errors[usable]))
+    return _Local(function, target, worst, median, at, float(np.sum(gap[usable])))
 
 
 def _sections(text: str, shipped: Program) -> dict[str, tuple[int, int]]:
@@ -106,14 +173,15 @@ def _sections(text: str, shipped: Program) -> dict[str, tuple[int, int]]:
     end = text.index("\n}\n", start)
     sections = {"prepare": (0, end)}
     for function in shipped.functions:
-        start, end = end, text.index(f"return {prefix(shipped.name)}_prepared_{function.name}(", end)
+        start, end = (
+            end,
+            text.index(f"return {prefix(shipped.name)}_prepared_{function.name}(", end),
+        )
         sections[function.name] = (start, end)
     return sections
 
 
-def _shown(
-    same: list[_Local], sections: dict[str, tuple[int, int]], text: str
-) -> StatementErrors:
+def _shown(same: list[_Local], sections: dict[str, tuple[int, int]], text: str) -> StatementErrors:
     """The statement with its source, of the first function that holds it."""
     first = same[0]
     place = _find(first.target, text, *sections[first.function])

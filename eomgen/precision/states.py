@@ -103,9 +103,7 @@ def _rated(linkage: Linkage, state: State) -> State:
         return state
     nodes = [*(r.rate for r in rows), *(a for r in rows for a in r.jacobian)]
     moved = _least_change(_columns(linkage, nodes, state), len(rows))
-    return replace(
-        state, rates=tuple(v + step for v, step in zip(state.rates, moved, strict=True))
-    )
+    return replace(state, rates=tuple(v + step for v, step in zip(state.rates, moved, strict=True)))
 
 
 def _columns(linkage: Linkage, nodes: list[Node], state: State) -> Array:
@@ -117,7 +115,7 @@ def _columns(linkage: Linkage, nodes: list[Node], state: State) -> Array:
 
 def _least_change(found: Array, rows: int) -> Array:
     """-J^+ r for every state, (n, N); zero where it is not finite."""
-    finite = np.isfinite(found).all(axis=1)
+    finite: Array = np.isfinite(found).all(axis=1)
     usable = np.where(finite[:, None], found, 0.0)
     slopes = usable[:, rows:].reshape(len(found), rows, -1)
     steps: Array = -np.einsum("kij,kj->ik", np.linalg.pinv(slopes, rcond=1e-11), usable[:, :rows])
@@ -131,9 +129,9 @@ def _is_admissible(linkage: Linkage, state: State, boxes: list[tuple[float, floa
     gaps = [gap for _, gap in linkage.gaps]
     found = _columns(linkage, held + gaps, state) if held + gaps else np.zeros((len(state.time), 0))
     kept: Array = np.abs(found[:, : len(held)]).max(axis=1, initial=0.0) < CLOSED
-    kept &= (found[:, len(held) :] >= 0).all(axis=1)
+    kept = kept & (found[:, len(held) :] >= 0).all(axis=1)
     for values, (low, high, declared) in zip(state.coordinates, boxes, strict=True):
-        kept &= (values >= low) & (values <= high) if declared else np.isfinite(values)
+        kept = kept & ((values >= low) & (values <= high) if declared else np.isfinite(values))
     return kept
 
 
