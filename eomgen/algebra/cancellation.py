@@ -165,15 +165,15 @@ class _Rules:
 
     def sum(self, a: Node, b: Node, sign: int) -> Node:
         """a + sign b by the first rule that fits, else as it stands."""
-        found = self.rewritten(a, b, sign) if _may_fit(a, b) else None
+        found = self.rewritten(a, b, sign)
         return self.scene.build[self.plain[sign]](a, b) if found is None else found
 
     def rewritten(self, a: Node, b: Node, sign: int) -> Node | None:
         """The result of the first rule that fits."""
         first, second = self.scene.products.of(a), self.scene.products.of(b)
-        common, pair = _parted(first, second, sign)
-        if len(pair.first) > 1 and len(pair.second) > 1:
+        if not _may_fit(first.powers, second.powers):
             return None
+        common, pair = _parted(first, second, sign)
         for rule, each in _trials(pair):
             if (bracket := rule.apply(self.scene, each, a)) is not None:
                 return self.scene.build["multiply"](self.common(common, first, a), bracket)
@@ -195,12 +195,10 @@ def _trials(pair: Pair) -> Iterator[tuple[Rule, Pair]]:
         yield rule, pair.turned()
 
 
-WAVES_AND_ROOTS = ("sin", "cos", "sqrt", "multiply", "negate", "divide")
-
-
-def _may_fit(a: Node, b: Node) -> bool:
-    """Whether any rule could fit, seen from outside."""
-    return a.operator in WAVES_AND_ROOTS or b.operator in WAVES_AND_ROOTS
+def _may_fit(first: Powers, second: Powers) -> bool:
+    """Whether any rule could fit: what differs is a root with anything, or waves, or nothing."""
+    differing = {factor.operator for factor, _ in first.items() ^ second.items()}
+    return "sqrt" in differing or differing <= {"sin", "cos"}
 
 
 def _parted(first: Product, second: Product, sign: int) -> tuple[Powers, Pair]:

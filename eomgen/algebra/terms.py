@@ -42,25 +42,31 @@ class Products:
         return found
 
     def _find(self, node: Node) -> Product:
-        match node.operator:
-            case "number":
-                return Product(node.datum, {})
-            case "negate":
-                inner = self.of(node.operands[0])
-                return Product(-inner.number, inner.powers)
-            case "multiply" | "divide":
-                return self._joined(node)
+        operator = node.operator
+        if operator == "multiply" or operator == "divide":
+            return self._joined(node)
+        if operator == "number":
+            return Product(node.datum, {})
+        if operator == "negate":
+            inner = self.of(node.operands[0])
+            return Product(-inner.number, inner.powers)
         return Product(1, {node: 1})
 
     def _joined(self, node: Node) -> Product:
         """A product or a quotient of two."""
-        above, below = map(self.of, node.operands)
+        first, second = map(self.of, node.operands)
+        powers = dict(first.powers)
         sign = 1 if node.operator == "multiply" else -1
-        powers = dict(above.powers)
-        for factor, exponent in below.powers.items():
-            powers[factor] = powers.get(factor, 0) + sign * exponent
-        number = above.number * Fraction(below.number) ** sign
-        return Product(number, {a: e for a, e in powers.items() if e})
+        for factor, exponent in second.powers.items():
+            found = powers.get(factor, 0) + sign * exponent
+            if found:
+                powers[factor] = found
+            else:
+                del powers[factor]
+        number = first.number
+        if second.number != 1:
+            number = number * second.number if sign == 1 else Fraction(number) / second.number
+        return Product(number, powers)
 
 
 def built(graph_of: Node, product: Product) -> Node:

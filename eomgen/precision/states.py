@@ -115,7 +115,7 @@ def _columns(linkage: Linkage, nodes: list[Node], state: State) -> Array:
 
 def _least_change(found: Array, rows: int) -> Array:
     """-J^+ r for every state, (n, N); zero where it is not finite."""
-    finite: Array = np.isfinite(found).all(axis=1)
+    finite = np.asarray(np.isfinite(found).all(axis=1))
     usable = np.where(finite[:, None], found, 0.0)
     slopes = usable[:, rows:].reshape(len(found), rows, -1)
     steps: Array = -np.einsum("kij,kj->ik", np.linalg.pinv(slopes, rcond=1e-11), usable[:, :rows])
