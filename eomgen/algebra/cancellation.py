@@ -8,15 +8,20 @@ where code is written, on values that have been derived, compared and proven bef
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 
 from eomgen.algebra.cancellation_roots import arc_cosine, arc_sine, less, root
 from eomgen.algebra.elementary import cos, sin
-from eomgen.algebra.graph import Exact, Node
+from eomgen.algebra.graph import Exact, Node, negate
 from eomgen.algebra.lift import Build
 from eomgen.algebra.signs import Signs
 from eomgen.algebra.terms import Powers, Product, Products, built
+
+
+SUMS = {"add": 1, "subtract": -1}
+PLAIN = {sign: operator for operator, sign in SUMS.items()}
+DEPTH = 2  # how deep in a sum a term looks for its like
 
 
 @dataclass(frozen=True)
@@ -87,8 +92,9 @@ def _half_angle(scene: Scene, pair: Pair, at: Node) -> Node | None:
     angle = _power(pair.second, "cos", 1)
     if pair.first or angle is None or abs(pair.number) != abs(pair.other_number):
         return None
-    half = (cos if pair.number == pair.other_number else sin)(angle / 2)
-    return 2 * pair.number * (half * half)
+    wave = cos(angle)
+    turned = 1 + wave if pair.number == pair.other_number else 1 - wave
+    return pair.number * turned  # halved where that pays
 
 
 def _roots(scene: Scene, pair: Pair, at: Node) -> Node | None:
@@ -108,8 +114,8 @@ def _roots(scene: Scene, pair: Pair, at: Node) -> Node | None:
 
 RULES = (
     Rule(
-        "a b - b a",
-        "0",
+        "a b - b a, a b + b a",
+        "0, 2 a b",
         "equal products in another order leave their rounding",
         _same,
     ),
@@ -128,7 +134,7 @@ RULES = (
     Rule(
         "a - a cos(x), a + a cos(x)",
         "2 a sin(x/2)^2, 2 a cos(x/2)^2",
-        "no digit is left where cos(x) is near 1 or -1",
+        "no digit is left where cos(x) is near 1 or -1; not beside a multiple of sin(x)",
         _half_angle,
     ),
     Rule(
@@ -161,19 +167,39 @@ class _Rules:
     """The rules on sums."""
 
     scene: Scene
-    plain: dict[int, str] = field(default_factory=lambda: {1: "add", -1: "subtract"})
 
     def sum(self, a: Node, b: Node, sign: int) -> Node:
         """a + sign b by the first rule that fits, else as it stands."""
-        found = self.rewritten(a, b, sign)
-        return self.scene.build[self.plain[sign]](a, b) if found is None else found
+        found = self.absorbed(a, b, sign, DEPTH)
+        if found is None and b.operator in SUMS:
+            found = self.absorbed(b, a, sign, DEPTH)
+            found = found if found is None or sign == 1 else negate(found)
+        return self.scene.build[PLAIN[sign]](a, b) if found is None else found
 
-    def rewritten(self, a: Node, b: Node, sign: int) -> Node | None:
-        """The result of the first rule that fits."""
+    def absorbed(self, a: Node, b: Node, sign: int, depth: int) -> Node | None:
+        """a + sign b, where b meets its like among the terms of a; None where no rule fits."""
+        found = self.rewritten(a, b, sign, depth == DEPTH)
+        if found is not None or depth == 0 or a.operator not in SUMS:
+            return found
+        first, second = a.operands
+        own = SUMS[a.operator]
+        if (inner := self.absorbed(second, b, own * sign, depth - 1)) is not None:
+            return self.scene.build[a.operator](first, inner)
+        if (inner := self.absorbed(first, b, sign, depth - 1)) is not None:
+            return self.scene.build[a.operator](inner, second)
+        return None
+
+    def rewritten(self, a: Node, b: Node, sign: int, outside: bool) -> Node | None:
+        """The result of the first rule that fits.
+
+        Inside of a sum like terms that only add up are left: others may share them.
+        """
         first, second = self.scene.products.of(a), self.scene.products.of(b)
-        if not _may_fit(first.powers, second.powers):
-            return None
+        if first.still != second.still and not (first.has_root or second.has_root):
+            return None  # only waves may differ, or a root be there
         common, pair = _parted(first, second, sign)
+        if not (outside or pair.first or pair.second or pair.number == -pair.other_number):
+            return None
         for rule, each in _trials(pair):
             if (bracket := rule.apply(self.scene, each, a)) is not None:
                 return self.scene.build["multiply"](self.common(common, first, a), bracket)
@@ -193,12 +219,6 @@ def _trials(pair: Pair) -> Iterator[tuple[Rule, Pair]]:
     for rule in RULES:
         yield rule, pair
         yield rule, pair.turned()
-
-
-def _may_fit(first: Powers, second: Powers) -> bool:
-    """Whether any rule could fit: what differs is a root with anything, or waves, or nothing."""
-    differing = {factor.operator for factor, _ in first.items() ^ second.items()}
-    return "sqrt" in differing or differing <= {"sin", "cos"}
 
 
 def _parted(first: Product, second: Product, sign: int) -> tuple[Powers, Pair]:

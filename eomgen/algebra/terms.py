@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 
 from eomgen.algebra.graph import Exact, Node, add, divide, multiply, negate, subtract
 
 Powers = Mapping[Node, int]  # factor -> exponent, none of them zero
+WAVES = frozenset(("sin", "cos"))
 MOST_TERMS = 8  # of a sum that is looked into
 
 
@@ -18,6 +20,16 @@ class Product:
 
     number: Exact
     powers: Powers
+
+    @cached_property
+    def still(self) -> frozenset[tuple[Node, int]]:
+        """The factors that are no sines and cosines."""
+        return frozenset(p for p in self.powers.items() if p[0].operator not in WAVES)
+
+    @cached_property
+    def has_root(self) -> bool:
+        """Whether a factor is a square root."""
+        return any(a.operator == "sqrt" for a in self.powers)
 
     def is_same(self, other: Product) -> bool:
         """Whether both are the same product, in whatever order."""
