@@ -12,18 +12,30 @@ from eomgen.algebra.terms import Product, Products, built, summands, total
 
 
 def less(products: Products, inside: Node, length: Product) -> Node | None:
-    """The value of u - L^2, where a term of u is L^2 or the square of a sum with the term L.
+    """The value of u - L^2, where both have a term, or u has the square of a sum with the term L.
 
     (x + L)^2 - L^2 = x (x + 2 L). None: u would have to be formed before L^2 is taken away.
     """
-    terms, gone = summands(inside), _squared(products, length)
+    terms, gone = _terms(inside), _squared(products, length)
     left = [a for a in terms if not any(products.of(a).is_same(g) for g in gone)]
-    if len(terms) - len(left) == len(gone):
-        return total(inside, left)
+    if len(left) < len(terms):
+        kept = [g for g in gone if not any(products.of(a).is_same(g) for a in terms)]
+        return total(inside, [*left, *(negate(built(inside, g)) for g in kept)])
     for at, term in enumerate(terms):
         if (product := _beside(products, term, length)) is not None:
             return add(product, total(inside, terms[:at] + terms[at + 1 :]))
     return None
+
+
+def _terms(inside: Node) -> list[Node]:
+    """The terms of a sum, and of the product (a - b)(a + b) that `root` makes of a^2 - b^2."""
+    match inside.operator, [a.operator for a in inside.operands]:
+        case "multiply", ["subtract", "add"] | ["add", "subtract"]:
+            first, second = (a.operands for a in inside.operands)
+            if {*first} == {*second}:
+                a, b = first if inside.operands[0].operator == "subtract" else second
+                return [multiply(a, a), negate(multiply(b, b))]
+    return summands(inside)
 
 
 def _squared(products: Products, length: Product) -> list[Product]:
@@ -148,7 +160,7 @@ def _ratio(products: Products, signs: Signs, ratio: Node) -> tuple[Node, Node] |
 def _triangle(
     products: Products, signs: Signs, above: Node, below: Node
 ) -> tuple[Node, Node, Node] | None:
-    """(a, b, c) of n = a^2 + b^2 - c^2, d = 2 a b, all positive; None for anything else."""
+    """(a, b, c) of n = a^2 + b^2 - c^2, d = 2 a b with a, b > 0; None for anything else."""
     terms = [products.of(a) for a in summands(above)]
     sides = [_base(t) for t in terms if t.number > 0]
     opposite = [_base(Product(-t.number, t.powers)) for t in terms if t.number < 0]
@@ -157,7 +169,7 @@ def _triangle(
         return None
     a, b, c = found
     twice = _times(Product(2, {}), _times(a, b))
-    nodes = tuple(built(above, s) for s in found)
-    if not twice.is_same(products.of(below)) or not all(map(signs.is_positive, nodes)):
+    first, second, third = (built(above, s) for s in found)
+    if not twice.is_same(products.of(below)) or not all(map(signs.is_positive, (first, second))):
         return None
-    return nodes[0], nodes[1], nodes[2]
+    return first, second, _size(signs, third)
