@@ -39,9 +39,7 @@ class Case:
 CASES = {
     "1 - cos(x)": Case(lambda x, y, l, k: 1 - g.cos(x), ((1e-3, 0), (1e-4, 0)), {"cos"}),
     "cos(x) - 1": Case(lambda x, y, l, k: y * (g.cos(x) - 1), ((1e-3, 2),), {"cos"}),
-    "k l - k l cos(x)": Case(
-        lambda x, y, l, k: k * l - l * (k * g.cos(x)), ((1e-3, 0),), {"cos"}
-    ),
+    "k l - k l cos(x)": Case(lambda x, y, l, k: k * l - l * (k * g.cos(x)), ((1e-3, 0),), {"cos"}),
     "1 + cos(x)": Case(lambda x, y, l, k: 1 + g.cos(x), ((pi - 1e-3, 0),), {"add"}, 600.0),
     "k - k cos(x)^2": Case(lambda x, y, l, k: k - k * g.cos(x) ** 2, ((1e-3, 0),), {"cos"}),
     "y - y sin(x)^2": Case(
@@ -61,9 +59,7 @@ CASES = {
         {"subtract"},
     ),
     "sqrt(1 + x) - 1": Case(lambda x, y, l, k: g.sqrt(1 + x) - 1, ((1e-5, 0), (-1e-4, 0))),
-    "l - sqrt(l^2 - x^2)": Case(
-        lambda x, y, l, k: k * (l - g.sqrt(l * l - x * x)), ((1e-3, 0),)
-    ),
+    "l - sqrt(l^2 - x^2)": Case(lambda x, y, l, k: k * (l - g.sqrt(l * l - x * x)), ((1e-3, 0),)),
     "k (sqrt((l + x)^2 + y^2) - l)": Case(
         lambda x, y, l, k: k * (g.sqrt((l + x) ** 2 + y * y) - l), ((1e-4, 1e-4), (-1e-5, 0))
     ),

@@ -55,9 +55,7 @@ def _halved(node: Node, angle: Node) -> Node:
     return -value if node.operator == "subtract" and node.operands[1] is node.graph.one else value
 
 
-def _is_covered(
-    node: Node, wave: Node, around: tuple[Parents, frozenset[Node], Products]
-) -> bool:
+def _is_covered(node: Node, wave: Node, around: tuple[Parents, frozenset[Node], Products]) -> bool:
     """Whether all that becomes of a node are terms beside a multiple of the sine."""
     parents, final, products = around
     for parent in parents[node]:

@@ -103,6 +103,6 @@ def _warnings(rows: list[FunctionErrors], condition: float | None) -> tuple[str,
     cond = "" if condition is None else f"cond {condition:.0e} -> "
     return (
         f"W-F32: {cond}{worst.name} has a float error of {spread.worst:.0e} (median "
-        f"{spread.median:.0e}); use double, or coordinates that do not add up along a chain "
-        "(absolute angles)",
+        f"{spread.median:.0e}); use double, or absolute angles and coordinates that count from "
+        "the natural length of springs",
     )

@@ -20,10 +20,10 @@ from eomgen.mechanics import machine, speeds
 from eomgen.precision.records import Array, Sampled
 from eomgen.study import Study
 
-STEPS = 40  # of Newton's method
+STEPS = 25  # of Newton's method
 CLOSED = 1e-9  # what a residual may be
-NARROW = 0.2  # share of the box, for the second half of the trials
-TRIALS = 8  # times the number of states
+ROUND_OFF = 1e-13
+SHARES = (1.0, 1.0, 1.0, 0.5, 0.5, 0.2, 0.2, 0.2)  # of the box, one batch after the other
 LATEST = 3.0  # [s]
 FASTEST = 2.0  # of rates and inputs
 
@@ -54,23 +54,29 @@ def _in_float(values: Array) -> Array:
 def _on_constraints(study: Study, scene: Linked, count: int) -> tuple[Array, Array]:
     """(times, states of the program) on the constraints, in doubles."""
     linkage, first = scene.links, scene.report.initial.state
-    at = _rated(linkage, _placed(linkage, _starts(linkage, first, TRIALS * count)))
-    kept = np.flatnonzero(_is_admissible(linkage, at, boxes_of(linkage, first)))[:count]
+    chance, boxes = random.Random(f"precision {linkage.model.name}"), boxes_of(linkage, first)
+    own = study.compiled.model
+    wanted = [*(c.symbol for c in own.coordinates), *speeds.symbols(own)]
+    rows: list[Array] = []
+    for share in SHARES:
+        if sum(len(r) for r in rows) >= count:
+            break
+        at = _rated(linkage, _placed(linkage, _starts(linkage, first, (chance, share, count))))
+        values = _values(scene, at)
+        found = np.stack([at.time, *(values[s] for s in wanted)], axis=1)
+        rows.append(found[_is_admissible(linkage, at, boxes)])
+    kept = np.concatenate(rows)[:count]
     if not len(kept):
         raise CheckError(
             "no admissible state was found to measure at; give `range` or `initial` values "
             "nearer to states that satisfy the constraints"
         )
-    own = study.compiled.model
-    values = _values(scene, at)
-    wanted = [*(c.symbol for c in own.coordinates), *speeds.symbols(own)]
-    return at.time[kept], np.array([values[s][kept] for s in wanted])
+    return kept[:, 0], kept[:, 1:].T
 
 
-def _starts(linkage: Linkage, first: State, count: int) -> State:
-    """Random states in the box of each coordinate, the later ones nearer to the first state."""
-    chance = random.Random(f"precision {linkage.model.name}")
-    share = np.where(np.arange(count) < count // 2, 1.0, NARROW)
+def _starts(linkage: Linkage, first: State, how: tuple[random.Random, float, int]) -> State:
+    """Random states in the box of each coordinate, or in that share of it about the first state."""
+    chance, share, count = how
 
     def uniform(low: float, high: float) -> Array:
         return np.array([chance.uniform(low, high) for _ in range(count)])
@@ -90,6 +96,8 @@ def _placed(linkage: Linkage, state: State) -> State:
     residuals = [r.residual for r in rows if r.residual is not None]
     for _ in range(STEPS if rows else 0):
         found = _columns(linkage, [*residuals, *(a for r in rows for a in r.jacobian)], state)
+        if (np.abs(found[:, : len(rows)]) < ROUND_OFF).all():
+            break
         moved = _least_change(found, len(rows))
         places = zip(state.coordinates, moved, strict=True)
         state = replace(state, coordinates=tuple(q + step for q, step in places))
