@@ -1,6 +1,7 @@
 """Expressions that lose digits where they are written plainly, and the states where they do.
 
-Shared with benchmarks/precision.py. X and Y are components of the state, L and K parameters.
+Shared with benchmarks/precision.py. The leaves are components x, y of the state and parameters
+a = 1/2, b = 3.
 """
 
 from dataclasses import dataclass
@@ -20,7 +21,7 @@ from eomgen.precision.engines import arrays_of
 from eomgen.program import Program, Variable
 from eomgen.render.lowered import lower, operations
 
-L, K = sp.Rational(1, 2), sp.Integer(3)
+A, B = sp.Rational(1, 2), sp.Integer(3)
 DIGITS = mpmath_arithmetic(60)
 EPSILON = 2.0**-23
 NONE = frozenset()
@@ -28,7 +29,7 @@ NONE = frozenset()
 
 @dataclass(frozen=True)
 class Case:
-    """build(x, y, l, k) is the plain node; near: states (x, y); gone: operators that must go."""
+    """build(x, y, a, b) is the plain node; near: states (x, y); gone: operators that must go."""
 
     build: object
     near: tuple
@@ -37,50 +38,50 @@ class Case:
 
 
 CASES = {
-    "1 - cos(x)": Case(lambda x, y, l, k: 1 - g.cos(x), ((1e-3, 0), (1e-4, 0)), {"cos"}),
-    "cos(x) - 1": Case(lambda x, y, l, k: y * (g.cos(x) - 1), ((1e-3, 2),), {"cos"}),
-    "k l - k l cos(x)": Case(lambda x, y, l, k: k * l - l * (k * g.cos(x)), ((1e-3, 0),), {"cos"}),
-    "1 + cos(x)": Case(lambda x, y, l, k: 1 + g.cos(x), ((pi - 1e-3, 0),), {"add"}, 600.0),
-    "k - k cos(x)^2": Case(lambda x, y, l, k: k - k * g.cos(x) ** 2, ((1e-3, 0),), {"cos"}),
+    "1 - cos(x)": Case(lambda x, y, a, b: 1 - g.cos(x), ((1e-3, 0), (1e-4, 0)), {"cos"}),
+    "cos(x) - 1": Case(lambda x, y, a, b: y * (g.cos(x) - 1), ((1e-3, 2),), {"cos"}),
+    "b a - b a cos(x)": Case(lambda x, y, a, b: b * a - a * (b * g.cos(x)), ((1e-3, 0),), {"cos"}),
+    "1 + cos(x)": Case(lambda x, y, a, b: 1 + g.cos(x), ((pi - 1e-3, 0),), {"add"}, 600.0),
+    "b - b cos(x)^2": Case(lambda x, y, a, b: b - b * g.cos(x) ** 2, ((1e-3, 0),), {"cos"}),
     "y - y sin(x)^2": Case(
-        lambda x, y, l, k: y - y * g.sin(x) ** 2, ((pi / 2 - 1e-3, 2),), {"subtract"}, 600.0
+        lambda x, y, a, b: y - y * g.sin(x) ** 2, ((pi / 2 - 1e-3, 2),), {"subtract"}, 600.0
     ),
-    "k (l sin(x) y)^2 + k (l cos(x) y)^2": Case(
-        lambda x, y, l, k: k * (l * g.sin(x) * y) ** 2 + k * (l * (g.cos(x) * y)) ** 2,
+    "b (a sin(x) y)^2 + b (a cos(x) y)^2": Case(
+        lambda x, y, a, b: b * (a * g.sin(x) * y) ** 2 + b * (a * (g.cos(x) * y)) ** 2,
         ((0.3, 2),),
         {"sin", "cos", "add"},
     ),
-    "y + k sin(x)^2 + k cos(x)^2": Case(
-        lambda x, y, l, k: y + k * g.sin(x) ** 2 + k * g.cos(x) ** 2, ((0.3, 2),), {"sin", "cos"}
+    "y + b sin(x)^2 + b cos(x)^2": Case(
+        lambda x, y, a, b: y + b * g.sin(x) ** 2 + b * g.cos(x) ** 2, ((0.3, 2),), {"sin", "cos"}
     ),
     "sin(x) (cos(x) y) - cos(x) (sin(x) y)": Case(
-        lambda x, y, l, k: g.sin(x) * (g.cos(x) * y) - g.cos(x) * (g.sin(x) * y),
+        lambda x, y, a, b: g.sin(x) * (g.cos(x) * y) - g.cos(x) * (g.sin(x) * y),
         ((0.27, 1.69), (0.19, 0.06)),
         {"subtract"},
     ),
-    "sqrt(1 + x) - 1": Case(lambda x, y, l, k: g.sqrt(1 + x) - 1, ((1e-5, 0), (-1e-4, 0))),
-    "l - sqrt(l^2 - x^2)": Case(lambda x, y, l, k: k * (l - g.sqrt(l * l - x * x)), ((1e-3, 0),)),
-    "k (sqrt((l + x)^2 + y^2) - l)": Case(
-        lambda x, y, l, k: k * (g.sqrt((l + x) ** 2 + y * y) - l), ((1e-4, 1e-4), (-1e-5, 0))
+    "sqrt(1 + x) - 1": Case(lambda x, y, a, b: g.sqrt(1 + x) - 1, ((1e-5, 0), (-1e-4, 0))),
+    "a - sqrt(a^2 - x^2)": Case(lambda x, y, a, b: b * (a - g.sqrt(a * a - x * x)), ((1e-3, 0),)),
+    "b (sqrt((a + x)^2 + y^2) - a)": Case(
+        lambda x, y, a, b: b * (g.sqrt((a + x) ** 2 + y * y) - a), ((1e-4, 1e-4), (-1e-5, 0))
     ),
-    "k (sqrt((x - l)^2 + y^2) - l)": Case(
-        lambda x, y, l, k: k * (g.sqrt((x - l) ** 2 + y * y) - l), ((1e-4, 1e-4),)
+    "b (sqrt((x - a)^2 + y^2) - a)": Case(
+        lambda x, y, a, b: b * (g.sqrt((x - a) ** 2 + y * y) - a), ((1e-4, 1e-4),)
     ),
     "sqrt(4 + x^2) - sqrt(4 + y^2)": Case(
-        lambda x, y, l, k: g.sqrt(4 + x * x) - g.sqrt(4 + y * y), ((1e-2, 2e-2),)
+        lambda x, y, a, b: g.sqrt(4 + x * x) - g.sqrt(4 + y * y), ((1e-2, 2e-2),)
     ),
-    "sqrt((x cos(y))^2 + (x sin(y))^2) - l": Case(
-        lambda x, y, l, k: g.sqrt((x * g.cos(y)) ** 2 + (x * g.sin(y)) ** 2) - l,
+    "sqrt((x cos(y))^2 + (x sin(y))^2) - a": Case(
+        lambda x, y, a, b: g.sqrt((x * g.cos(y)) ** 2 + (x * g.sin(y)) ** 2) - a,
         ((0.50001, 0.7),),
         {"sqrt", "sin", "cos"},
     ),
-    "sqrt(l^2 - x^2)": Case(lambda x, y, l, k: g.sqrt(l * l - x * x), ((0.49999, 0),)),
+    "sqrt(a^2 - x^2)": Case(lambda x, y, a, b: g.sqrt(a * a - x * x), ((0.49999, 0),)),
     "acos(x/y)": Case(
-        lambda x, y, l, k: g.acos(x / y), ((0.299999, 0.3), (1.1, 1.10003)), {"acos"}
+        lambda x, y, a, b: g.acos(x / y), ((0.299999, 0.3), (1.1, 1.10003)), {"acos"}
     ),
-    "asin(x/y)": Case(lambda x, y, l, k: g.asin(x / y), ((1.1, 1.10003),), {"asin"}, 4.0),
-    "acos((l^2 + k^2 - x^2)/(2 l k))": Case(
-        lambda x, y, l, k: g.acos((l * l + k * k - x * x) / (2 * l * k)),
+    "asin(x/y)": Case(lambda x, y, a, b: g.asin(x / y), ((1.1, 1.10003),), {"asin"}, 4.0),
+    "acos((a^2 + b^2 - x^2)/(2 a b))": Case(
+        lambda x, y, a, b: g.acos((a * a + b * b - x * x) / (2 * a * b)),
         ((2.50011, 0), (2.5003, 0), (3.49999, 0)),
         {"acos"},
     ),
@@ -93,7 +94,7 @@ def program(case):
     leaves = [graph.read("state", i) for i in range(2)]
     leaves += [graph.read("parameters", i) for i in range(2)]
     function = assemble("f", "", (1,), [case.build(*leaves)])
-    parameters = (Variable("l", value=L), Variable("k", value=K))
+    parameters = (Variable("a", value=A), Variable("b", value=B))
     states = (Variable("x"), Variable("y"))
     return Program("case", "", "", "", states, (), (), parameters, (), (function,))
 
@@ -113,7 +114,7 @@ def plainly(of, monkeypatch):
 
 def value(of, state, arithmetic, convert=float):
     """What `f` is at a state."""
-    values = {"l": convert(0.5), "k": convert(3)}
+    values = {"a": convert(0.5), "b": convert(3)}
     given = [values[p.name] for p in of.parameters]
     arguments = {"state": [convert(v) for v in state], "parameters": given}
     return call(of, "f", arguments, arithmetic)[0]

@@ -1,4 +1,4 @@
-"""Other forms of sums, roots and arcs: the same values, and digits where the plain form has none."""
+"""Other forms of sums, roots and arcs: the same values, and digits that the plain form loses."""
 
 import random
 
@@ -23,7 +23,7 @@ TOO_MUCH = 100.0  # epsilons of float
 @pytest.mark.parametrize("name", CASES)
 def test_the_other_form_is_an_identity(name, monkeypatch):
     of = program(CASES[name])
-    made = (written(of), written(of, {"l"}), written(of, {"l", "k"}), plainly(of, monkeypatch))
+    made = (written(of), written(of, {"a"}), written(of, {"a", "b"}), plainly(of, monkeypatch))
     for state in (*FAR, *CASES[name].near):
         if name.startswith("acos(("):
             state = (state[0] + 2.5, state[1]) if state in FAR else state
@@ -77,15 +77,15 @@ class Plain:
 
 
 STAYS = {
-    "no cancellation": lambda x, y, l, k: g.sqrt(x * x + y * y) + l,
-    "two free coordinates": lambda x, y, l, k: g.sqrt(x * x + y * y) - l,
-    "a length of unknown sign": lambda x, y, l, k: g.sqrt(1 + x * x) - y,
-    "other angles": lambda x, y, l, k: k * g.sin(x) ** 2 + k * g.cos(y) ** 2,
-    "other factors": lambda x, y, l, k: k * g.sin(x) ** 2 + l * g.cos(x) ** 2,
-    "other numbers": lambda x, y, l, k: 2 * g.sin(x) ** 2 + 3 * g.cos(x) ** 2,
-    "a difference of squares": lambda x, y, l, k: g.cos(x) ** 2 - g.sin(x) ** 2,
-    "half": lambda x, y, l, k: y - y * g.cos(x) / 2,
-    "no ratio": lambda x, y, l, k: g.acos(x) + g.asin(y),
+    "no cancellation": lambda x, y, a, b: g.sqrt(x * x + y * y) + a,
+    "two free coordinates": lambda x, y, a, b: g.sqrt(x * x + y * y) - a,
+    "a length of unknown sign": lambda x, y, a, b: g.sqrt(1 + x * x) - y,
+    "other angles": lambda x, y, a, b: b * g.sin(x) ** 2 + b * g.cos(y) ** 2,
+    "other factors": lambda x, y, a, b: b * g.sin(x) ** 2 + a * g.cos(x) ** 2,
+    "other numbers": lambda x, y, a, b: 2 * g.sin(x) ** 2 + 3 * g.cos(x) ** 2,
+    "a difference of squares": lambda x, y, a, b: g.cos(x) ** 2 - g.sin(x) ** 2,
+    "half": lambda x, y, a, b: y - y * g.cos(x) / 2,
+    "no ratio": lambda x, y, a, b: g.acos(x) + g.asin(y),
 }
 
 
@@ -96,9 +96,9 @@ def test_what_has_no_better_form_stays(name, monkeypatch):
 
 
 def test_a_rotation_about_a_skew_axis_needs_no_further_sine(monkeypatch):
-    turned = Plain(lambda x, y, l, k: (k * l) * (1 - g.cos(x)) + l * g.sin(x))
+    turned = Plain(lambda x, y, a, b: (b * a) * (1 - g.cos(x)) + a * g.sin(x))
     assert written(program(turned)) == plainly(program(turned), monkeypatch)
-    alone = Plain(lambda x, y, l, k: (k * l) * (1 - g.cos(x)) * y + l * g.sin(y))
+    alone = Plain(lambda x, y, a, b: (b * a) * (1 - g.cos(x)) * y + a * g.sin(y))
     assert "cos" not in applied(written(program(alone)))
     arm = coded(program_of("skew_arm")).program
     assert applied_of(arm, "accelerations")["sin"] == 2
@@ -115,7 +115,7 @@ def test_a_denominator_of_unknown_sign_is_taken_as_it_is(monkeypatch):
 
 def test_roots_at_zero_stay_zero():
     """A form that is 0/0 where the plain one is 0 would stop a scene at rest."""
-    of = program(Plain(lambda x, y, l, k: g.sqrt(x * x + y * y) - g.sqrt(x * x)))
+    of = program(Plain(lambda x, y, a, b: g.sqrt(x * x + y * y) - g.sqrt(x * x)))
     assert exactly(written(of), (0, 0)) == 0
 
 
@@ -139,7 +139,7 @@ def test_shipped_scenes_keep_their_values_and_cost_no_more(name, monkeypatch):
         "parameters": [chance.uniform(1, 2) for _ in of.parameters],
     }
     with number.quiet():
-        exact = {k: [decimals.exactly(v) for v in values] for k, values in given.items()}
+        exact = {b: [decimals.exactly(v) for v in values] for b, values in given.items()}
         for function in of.functions:
             results = [interpreter.call(p, function.name, exact, number) for p in (of, made)]
             size = max((abs(v) for v in results[0]), default=0) + 1

@@ -18,7 +18,6 @@ from eomgen.algebra.lift import Build
 from eomgen.algebra.signs import Signs
 from eomgen.algebra.terms import Powers, Product, Products, built
 
-
 SUMS = {"add": 1, "subtract": -1}
 PLAIN = {sign: operator for operator, sign in SUMS.items()}
 DEPTH = 2  # how deep in a sum a term looks for its like

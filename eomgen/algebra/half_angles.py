@@ -1,8 +1,8 @@
 """1 - cos(x) as 2 sin(x/2)^2 and 1 + cos(x) as 2 cos(x/2)^2, where the digits are missed.
 
-They are missed where the value stands by itself: in a potential, a gap, an elongation. In a rotation
-about a skew axis, cos(x) 1 + (1 - cos(x)) e e' + sin(x) [e x], it is added to a multiple of sin(x),
-which is larger wherever it loses digits; there it stays, and a sine less is computed.
+They are missed where the value stands by itself: in a potential, a gap, an elongation. In a
+rotation about a skew axis, cos(x) 1 + (1 - cos(x)) e e' + sin(x) [e x], it is added to a multiple
+of sin(x), which is larger wherever it loses digits; there it stays, and a sine less is computed.
 """
 
 from __future__ import annotations
