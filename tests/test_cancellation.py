@@ -80,6 +80,7 @@ STAYS = {
     "no cancellation": lambda x, y, a, b: g.sqrt(x * x + y * y) + a,
     "two free coordinates": lambda x, y, a, b: g.sqrt(x * x + y * y) - a,
     "a length of unknown sign": lambda x, y, a, b: g.sqrt(1 + x * x) - y,
+    "a length that may be negative": lambda x, y, a, b: g.sqrt(x * x + y * y) - y,
     "other angles": lambda x, y, a, b: b * g.sin(x) ** 2 + b * g.cos(y) ** 2,
     "other factors": lambda x, y, a, b: b * g.sin(x) ** 2 + a * g.cos(x) ** 2,
     "other numbers": lambda x, y, a, b: 2 * g.sin(x) ** 2 + 3 * g.cos(x) ** 2,
