@@ -57,28 +57,41 @@ def assemble(
     if prod(shape) != len(results):
         raise ValueError(f"{name} has {len(results)} results, its shape is {shape}")
     reached = set(below(results))
-    checks = tuple(pair for pair in pivots if _divisor(pair[0]) in reached)
+    checks = tuple(pair for pair in pivots if not reached.isdisjoint(_divisors(pair[0])))
     return written(Function(name, about, shape, (), ()), results, checks, {})
 
 
-def _divisor(pivot: Node) -> Node:
-    """What is left of a pivot as a denominator: signs and numbers are taken out of it."""
-    return term(pivot.operands[0] if pivot.operator == "negate" else pivot)[1]
+def _divisors(pivot: Node) -> list[Node]:
+    """What is divided by: the pivot without signs and numbers; the least of several is each."""
+    stack, found = [pivot], []
+    while stack:
+        value = stack.pop()
+        value = term(value.operands[0] if value.operator == "negate" else value)[1]
+        if value.operator == "min":
+            stack.extend(value.operands)
+        else:
+            found.append(value)
+    return found
 
 
 def written(
-    head: Function, results: Sequence[Node], pivots: Pivots, given: Mapping[Node, Expression]
+    head: Function,
+    results: Sequence[Node],
+    pivots: Pivots,
+    given: Mapping[Node, Expression],
+    names: int = 0,
 ) -> Function:
     """`head` with statements that check all `pivots` and compute `results`.
 
-    Nodes of `given` are not computed but read as it says.
+    Nodes of `given` are not computed but read as it says; `names` have been given before.
     """
     checks = dict(pivots)
     wanted = [*results, *checks.values()]
     nodes = below([*wanted, *checks], given.__contains__)
     partners = _partners(nodes)
-    named = {*partners, *checks, *_used_twice(nodes, wanted)} - (given.keys() - checks.keys())
-    draft = _Draft(frozenset(named), partners, given)
+    known = {a for a, e in given.items() if a not in checks or isinstance(e, Value)}
+    named = {*partners, *checks, *_used_twice(nodes, wanted)} - known
+    draft = _Draft(frozenset(named), partners, given, names=names)
     # depth first, 2 to 15 % less values would be alive at a time, and the machine code no better
     for node in nodes:
         if node in checks:
