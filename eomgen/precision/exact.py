@@ -11,6 +11,7 @@ import numpy as np
 from eomgen import interpreter
 from eomgen.algebra import decimals
 from eomgen.algebra.arithmetic import Arithmetic
+from eomgen.algebra.unroll import unrolled
 from eomgen.errors import CheckError
 from eomgen.precision.records import Array, Sampled
 from eomgen.program import Function, Program
@@ -37,6 +38,11 @@ class Exact:
     constants: tuple[float, ...]
 
 
+def plain(function: Function) -> Function:
+    """A function as C computes it, with loops over lanes written out."""
+    return lower(unrolled(function))
+
+
 class Bench:
     """A program, its states, and what `prepare` makes of the parameters."""
 
@@ -54,12 +60,12 @@ class Bench:
         """The preparation itself, at one state."""
         if self.shipped.prepare is None:
             return None
-        return self._traced(lower(self.shipped.prepare), [(0, 1)])
+        return self._traced(plain(self.shipped.prepare), [(0, 1)])
 
     def traced(self, function: Function) -> Exact:
         """Every value of a function."""
         starts = range(0, self.sampled.count, BLOCK)
-        return self._traced(lower(function), [(i, i + BLOCK) for i in starts])
+        return self._traced(plain(function), [(i, i + BLOCK) for i in starts])
 
     def _traced(self, function: Function, blocks: list[tuple[int, int]]) -> Exact:
         values: dict[str, list[Array]] = {}
@@ -97,7 +103,7 @@ class Bench:
         """
         for function in derived.functions:
             _, source = self.run(function, 0, PROVEN)
-            _, made = self.run(self.shipped.function(function.name), 0, PROVEN)
+            _, made = self.run(plain(self.shipped.function(function.name)), 0, PROVEN)
             with self.arithmetic.quiet():
                 error = _difference(source, made)
             if error > SAME:

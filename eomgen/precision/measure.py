@@ -9,19 +9,19 @@ from eomgen.evaluate import depends_on_time
 from eomgen.precision import statements, states
 from eomgen.precision.engines import engines
 from eomgen.precision.errors import ON_CONSTRAINTS, ZERO, of_function, scales_of
-from eomgen.precision.exact import Bench
+from eomgen.precision.exact import Bench, plain
 from eomgen.precision.records import Array, FunctionErrors, Report
 from eomgen.precision.statements import Traced
 from eomgen.program import Program
 from eomgen.render.code_context import coded
-from eomgen.render.lowered import lower, operations
+from eomgen.render.lowered import operations
 from eomgen.render.targets import TARGETS, render
 from eomgen.render.templating import environment
 from eomgen.study import Study
 
 STATES = 1000
 FEWEST = 50
-AFFORDED = 40_000_000  # operations in fifty digits, all states together: under a minute
+AFFORDED = 16_000_000  # operations in fifty digits, all states together: under a minute
 WAVE = 50  # operations that a function such as the sine counts
 PLAIN = frozenset(("add", "subtract", "multiply", "divide", "negate", "sqrt", "abs", "sign"))
 TOO_MUCH = 1e-3  # of error in float
@@ -70,7 +70,7 @@ def of(study: Study) -> Report:
 
 def _affordable(shipped: Program) -> int:
     """How many states there is time for."""
-    applied = [operations(lower(f)) for f in shipped.functions]
+    applied = [operations(plain(f)) for f in shipped.functions]
     cost = sum(n * (1 if o in PLAIN else WAVE) for counts in applied for o, n in counts.items())
     return min(STATES, max(FEWEST, AFFORDED // max(cost, 1)))
 

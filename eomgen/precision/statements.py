@@ -21,8 +21,20 @@ from eomgen.precision.engines import arrays_of
 from eomgen.precision.exact import Exact
 from eomgen.precision.reach import Sweep, reach, seeds
 from eomgen.precision.records import Array, Sampled, StatementErrors
-from eomgen.program import Apply, Assign, Expression, Program, Read, Solve, Value
+from eomgen.program import (
+    Alike,
+    Apply,
+    Assign,
+    Expression,
+    Program,
+    Read,
+    Solve,
+    Value,
+    in_lane,
+)
 from eomgen.render.dialects import C
+from eomgen.render.grouped import codes, groups
+from eomgen.render.lowered import lower
 from eomgen.render.names import prefix
 from eomgen.render.routines import variables
 
@@ -120,18 +132,19 @@ def _of_function(
 ) -> Iterator[_Local]:
     """The local errors of a function's statements and of its results."""
     exact, (sampled, reaches) = traced.exact, beside
-    names = variables(exact.function, shipped, C)
+    names = _targets(shipped, name)
+    constants = [f"m->{code}" for code in codes(len(exact.function.results), groups(shipped))]
     nowhere = np.zeros(1)
 
     def local(value: str, found: Any) -> _Local:
         truth, reached = exact.values[value], reaches.get(Value(value), nowhere)
-        return _local(name, names[Value(value)], (found, truth, reached))
+        return _local(name, names[value], (found, truth, reached))
 
     def last(index: int, found: Any) -> _Local:
         truth = exact.results[index].astype(float)
         if name == "prepare":
             reached = reaches[Read("constants", index)]
-            return _local(name, f"m->c{index}", (found, truth, reached))
+            return _local(name, constants[index], (found, truth, reached))
         return _local(name, f"result[{index}]", (found, truth, 1 / traced.scales[index]))
 
     with FLOAT.quiet():
@@ -144,10 +157,24 @@ def _of_function(
                 case Solve(values, _, _):
                     memory.execute(statement)
                     solution, memory.values = memory.values, dict(rounded)
-                    yield from (local(v, solution[v]) for v in values if Value(v) in names)
+                    yield from (local(v, solution[v]) for v in values if v in names)
         for index, result in enumerate(exact.function.results):
             if isinstance(result, Apply):
                 yield last(index, memory.value(result))
+
+
+def _targets(shipped: Program, name: str) -> dict[str, str]:
+    """What stands before the equals sign of each value; in a loop over lanes all have the same."""
+    source = shipped.prepare if name == "prepare" else shipped.function(name)
+    assert source is not None
+    lowered = lower(source)
+    names = variables(lowered, shipped, C)
+    found = {v.name: code for v, code in names.items() if isinstance(v, Value)}
+    for statement in lowered.statements:
+        if isinstance(statement, Alike):
+            each = ((s.name, k) for s in statement.statements for k in range(statement.lanes))
+            found |= {in_lane(value, k): found[value] for value, k in each}
+    return found
 
 
 def _local(function: str, target: str, numbers: tuple[Any, Array, Array]) -> _Local:
@@ -196,7 +223,7 @@ def _find(target: str, text: str, start: int, end: int) -> int:
     spelled = re.escape(target)
     if target.startswith("result"):
         spelled = f"(?:{spelled}|{re.escape(target.replace('result', 'work'))})"
-    elif not target.startswith("m->"):
+    elif not target.startswith("m->") and not target.endswith("[lane]"):
         spelled = rf"const \w+ {spelled}"
     found = re.compile(rf"\b{spelled} =\s").search(text, start, end)
     assert found, f"{target} is not in the C"
