@@ -91,12 +91,17 @@ ALLOWED: dict[str, set[str]] = {
     | {"checks", "functions", "integrators", "output_links", "analysis", "mechanics", "render"}
     | {"spec", "stepping", "study"},
     "cli_common": {"errors", "files", "functions", "outputs", "render", "spec", "study", "wanted"},
+    "precision": RECORDS
+    | {"algebra", "analysis", "checks", "evaluate", "formulation", "interpreter", "mechanics"}
+    | {"numerics", "render", "study"},
+    "cli_precision": {"precision", "spec", "study"},
     "cli_regressor": {"cli_common", "files", "functions", "study", "wanted"},
     "urdf": {"__init__", "errors", "spec"},
     "cli_import": {"cli_common", "errors", "files", "shelf", "spec", "urdf"},
     "cli": {
         "__init__",
         "cli_import",
+        "cli_precision",
         "cli_chart",
         "cli_common",
         "cli_simulate",
