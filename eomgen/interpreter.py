@@ -14,6 +14,7 @@ from eomgen.algebra.arithmetic import (
     solve_loop,
 )
 from eomgen.algebra.ldl import SingularMassMatrix
+from eomgen.algebra.unroll import unrolled
 from eomgen.errors import CheckError
 from eomgen.program import (
     Apply,
@@ -87,7 +88,7 @@ def run(
     """
     memory = _Memory(arguments, arithmetic)
     try:
-        for statement in function.statements:
+        for statement in unrolled(function).statements:
             memory.execute(statement)
         return [memory.value(result) for result in function.results]
     except (ZeroDivisionError, ValueError, OverflowError) as error:

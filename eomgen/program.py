@@ -94,7 +94,27 @@ class Solve:
         return (isqrt(8 * len(self.matrix) + 1) - 1) // 2
 
 
-Statement = Assign | RequirePositive | Solve
+@dataclass(frozen=True)
+class Alike:
+    """The same assignments once for each of `lanes` limbs that are built alike.
+
+    given: names that the assignments read, each with what it stands for lane by lane; kept: those
+    of their own names that statements behind may read, of one lane as `in_lane(name, lane)` or,
+    in later `Alike` of as many lanes, of each lane as `name`.
+    """
+
+    lanes: int
+    given: tuple[tuple[str, tuple[Expression, ...]], ...]
+    statements: tuple[Assign, ...]
+    kept: tuple[str, ...]
+
+
+Statement = Assign | RequirePositive | Solve | Alike
+
+
+def in_lane(name: str, lane: int) -> str:
+    """What a value of one lane is called outside."""
+    return f"{name}_{lane}"
 
 
 def operands(statement: Statement) -> tuple[Expression, ...]:
@@ -106,6 +126,10 @@ def operands(statement: Statement) -> tuple[Expression, ...]:
             return (value, scale)
         case Solve(_, matrix, right):
             return matrix + right
+        case Alike(_, given, statements, _):
+            return tuple(e for _, entries in given for e in entries) + tuple(
+                s.expression for s in statements
+            )
 
 
 @dataclass(frozen=True)

@@ -75,18 +75,23 @@ def _divisors(pivot: Node) -> list[Node]:
 
 
 def written(
-    head: Function, results: Sequence[Node], pivots: Pivots, given: Mapping[Node, Expression]
+    head: Function,
+    results: Sequence[Node],
+    pivots: Pivots,
+    given: Mapping[Node, Expression],
+    names: int = 0,
 ) -> Function:
     """`head` with statements that check all `pivots` and compute `results`.
 
-    Nodes of `given` are not computed but read as it says.
+    Nodes of `given` are not computed but read as it says; `names` have been given before.
     """
     checks = dict(pivots)
     wanted = [*results, *checks.values()]
     nodes = below([*wanted, *checks], given.__contains__)
     partners = _partners(nodes)
-    named = {*partners, *checks, *_used_twice(nodes, wanted)} - (given.keys() - checks.keys())
-    draft = _Draft(frozenset(named), partners, given)
+    known = {a for a, e in given.items() if a not in checks or isinstance(e, Value)}
+    named = {*partners, *checks, *_used_twice(nodes, wanted)} - known
+    draft = _Draft(frozenset(named), partners, given, names=names)
     # depth first, 2 to 15 % less values would be alive at a time, and the machine code no better
     # the least of several divisors is checked before any of them divides
     least = below([pivot for pivot in checks if pivot.operator == "min"], given.__contains__)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from eomgen.algebra.graph import Graph, Node
 from eomgen.algebra.ldl import Pivots
+from eomgen.algebra.unroll import unrolled
 from eomgen.program import (
     Apply,
     Assign,
@@ -48,6 +49,7 @@ def lift(function: Function, target: Target) -> Lifted:
 
     Several quotients of one denominator become products with one reciprocal.
     """
+    function = unrolled(function)
     work = _Work(target, _shared_denominators(function))
     for statement in function.statements:
         work.execute(statement)

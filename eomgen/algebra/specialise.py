@@ -38,8 +38,8 @@ def specialised(program: Program, folded: Collection[str] = ()) -> Program:
         SingularMassMatrix: with the folded values some motion has no inertia.
     """
     free = tuple(p for p in program.parameters if p.name not in folded)
-    target = _target(program, free)
-    lifted = [_lifted(function, target) for function in program.functions]
+    target = target_of(program, free)
+    lifted = [on_graph(function, target) for function in program.functions]
     constants, given = _constants(lifted, len(free))
     return replace(
         program,
@@ -50,7 +50,7 @@ def specialised(program: Program, folded: Collection[str] = ()) -> Program:
     )
 
 
-def _target(program: Program, free: tuple[Variable, ...]) -> Target:
+def target_of(program: Program, free: tuple[Variable, ...]) -> Target:
     """A new graph whose first leaves are the free parameters; the others are numbers."""
     graph = Graph()
     places = {p.name: graph.read("parameters", i) for i, p in enumerate(free)}
@@ -64,7 +64,7 @@ def _target(program: Program, free: tuple[Variable, ...]) -> Target:
     return Target(graph, build, given)
 
 
-def _lifted(function: Function, target: Target) -> Lifted:
+def on_graph(function: Function, target: Target) -> Lifted:
     """The function on the graph, without the pivots that are positive numbers."""
     try:
         found = lift(function, target)
@@ -80,7 +80,7 @@ def _is_positive(pivot: Node) -> bool:
     """Whether a pivot is known to be positive; one that never is is an error."""
     if pivot.leaves:
         return False
-    value = _literal(pivot)
+    value = literal(pivot)
     if value <= 0:
         raise SingularMassMatrix("with the folded parameters", float(value))
     return True
@@ -92,26 +92,26 @@ def _constants(lifted: Iterable[Lifted], free: int) -> tuple[list[Node], dict[No
     A value without any argument is written as the number that it is.
     """
     wanted = [a for each in lifted for a in (*each.results, *(n for p in each.pivots for n in p))]
-    edge = [a for a in below(wanted, stop=lambda a: _is_fixed(a, free)) if _is_fixed(a, free)]
-    computed = [a for a in edge if not _is_written(a)]
-    numbers: dict[Node, Expression] = {a: Number(_literal(a)) for a in computed if not a.leaves}
+    edge = [a for a in below(wanted, stop=lambda a: is_fixed(a, free)) if is_fixed(a, free)]
+    computed = [a for a in edge if not is_written(a)]
+    numbers: dict[Node, Expression] = {a: Number(literal(a)) for a in computed if not a.leaves}
     constants = [a for a in computed if a.leaves]
     return constants, numbers | {a: Read("constants", i) for i, a in enumerate(constants)}
 
 
-def _is_fixed(node: Node, free: int) -> bool:
+def is_fixed(node: Node, free: int) -> bool:
     """Whether a value depends on parameters alone: these are the first leaves of the graph."""
     return not node.leaves >> free
 
 
-def _is_written(node: Node) -> bool:
+def is_written(node: Node) -> bool:
     """Whether a fixed value is as good as its name: an argument, a number, or minus one."""
     if node.operator == "negate":
         node = node.operands[0]
     return node.operator in ("read", "number")
 
 
-def _literal(node: Node) -> Fraction:
+def literal(node: Node) -> Fraction:
     """A value without arguments as a number, exact or to `LITERAL_DIGITS`.
 
     Raises:

@@ -7,9 +7,11 @@ from typing import Any
 import sympy as sp
 
 from eomgen.algebra.specialise import specialised, with_values
+from eomgen.algebra.specialise_alike import side_by_side
 from eomgen.program import OPERATORS, Expression, Program, Read, Solve, Value, Variable
 from eomgen.render.code import Names, expression, number
 from eomgen.render.dialects import C_FUNCTIONS, PLAIN, PYTHON, C, Dialect
+from eomgen.render.grouped import codes, groups
 from eomgen.render.lowered import atoms
 from eomgen.render.names import escaped, prefix
 from eomgen.render.routines import Routine, routine
@@ -68,7 +70,10 @@ def coded(program: Program, style: Style = Style()) -> Code:
         UsageError, SingularMassMatrix: with the folded values something is not defined.
     """
     folded = with_values(program) if style.fold else frozenset[str]()
-    return Code(specialised(program, folded), style)
+    if style.batch:
+        # its lanes are the states
+        return Code(specialised(program, folded), style)
+    return Code(side_by_side(program, folded, style.longest), style)
 
 
 def _code(subject: Program | Code) -> Code:
@@ -99,6 +104,7 @@ def interface(program: Program, dialect: Dialect) -> dict[str, Any]:
         "functions": functions,
         "prepare": prepare,
         "constants": _constants(program),
+        "constant_fields": _fields(program),
         "operators": tuple(o for o in OPERATORS if o in used),
         "solve_sizes": tuple(sorted({s.size for s in statements if isinstance(s, Solve)})),
         "pivots": any(f.can_fail for f in functions),
@@ -112,7 +118,20 @@ def _constants(program: Program) -> tuple[Symbol, ...]:
         return ()
     names: Names = {Read("parameters", i): p.name for i, p in enumerate(program.parameters)}
     formulas = [_formula(e, names) for e in program.prepare.results]
-    return tuple(Symbol(f"c{i}", f"c{i}", "", text, None) for i, text in enumerate(formulas))
+    named = enumerate(zip(codes(len(formulas), groups(program)), formulas, strict=True))
+    return tuple(Symbol(f"c{i}", code, "", text, None) for i, (code, text) in named)
+
+
+def _fields(program: Program) -> tuple[Symbol, ...]:
+    """The constants as members of a struct: groups are arrays."""
+    known = groups(program)
+    found = []
+    for i, symbol in enumerate(_constants(program)):
+        if i in known:
+            found.append(replace(symbol, code=f"c{i}[{known[i]}]", about=""))
+        elif "[" not in symbol.code:
+            found.append(symbol)
+    return tuple(found)
 
 
 def _formula(tree: Expression, names: Names) -> str:

@@ -18,6 +18,7 @@ class Dialect:
     reserved_members: frozenset[str]  # names that a parameter cannot have
     pairs: bool = False  # sine and cosine of an angle in one statement
     lanes: bool = False  # functions also for many states at once
+    loops: bool = False  # limbs that are alike in a loop
     longest: int = maxsize  # statements of a function that is not cut into parts
 
 
@@ -70,6 +71,7 @@ C = Dialect(
     | frozenset(_C_CALLS.values()),
     reserved_members=_C_MEMBERS,
     pairs=True,
+    loops=True,
     longest=LONGEST,
 )
 PYTHON = Dialect(

@@ -7,6 +7,7 @@ from fractions import Fraction
 from itertools import count
 
 from eomgen.program import (
+    Alike,
     Apply,
     Assign,
     Expression,
@@ -17,6 +18,7 @@ from eomgen.program import (
     Solve,
     Statement,
     Value,
+    in_lane,
     operands,
 )
 
@@ -57,6 +59,8 @@ def defined(statement: Statement) -> tuple[str, ...]:
             return (name,)
         case Solve(names, _, _):
             return names
+        case Alike(lanes, _, _, kept):
+            return tuple(in_lane(name, lane) for name in kept for lane in range(lanes))
     return ()
 
 
@@ -69,6 +73,10 @@ def _map(statement: Statement, change: Callable[[Expression], Expression]) -> St
             return RequirePositive(value, change(scale))
         case Solve(names, matrix, right):
             return Solve(names, tuple(map(change, matrix)), tuple(map(change, right)))
+        case Alike(_, given, _, _):
+            # its own assignments are sums, products, quotients and roots
+            entries = tuple((name, tuple(map(change, each))) for name, each in given)
+            return replace(statement, given=entries)
 
 
 def _lowered(statement: Statement, name: Name) -> Statement:

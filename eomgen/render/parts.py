@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
 
-from eomgen.program import Expression, Function, Statement, Value, operands
+from eomgen.program import Alike, Expression, Function, Statement, Value, operands
 from eomgen.render.lowered import atoms, defined
 
 Slots = tuple[tuple[Expression, int], ...]
@@ -34,9 +34,12 @@ class Divided:
 
 
 def divided(function: Function, limit: int) -> Divided | None:
-    """The parts of a function with more statements than `limit`, of half of it; else None."""
+    """The parts of a function with more statements than `limit`, of half of it; else None.
+
+    Loops over lanes have made a function short.
+    """
     statements = function.statements
-    if len(statements) <= limit:
+    if len(statements) <= limit or any(isinstance(s, Alike) for s in statements):
         return None
     count = -(-2 * len(statements) // limit)
     size = -(-len(statements) // count)

@@ -1,25 +1,32 @@
 """Functions of a program as text: arguments, steps and results, for a template to lay out."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from eomgen.algebra.unroll import unrolled
 from eomgen.program import (
     ARGUMENTS,
     OPERATORS,
+    Alike,
     Apply,
     Assign,
     Expression,
     Function,
+    Number,
     Program,
     Read,
     RequirePositive,
     Solve,
     Statement,
     Value,
+    in_lane,
     operands,
 )
 from eomgen.render.code import Names, expression
 from eomgen.render.dialects import Dialect
+from eomgen.render.grouped import apart, groups
 from eomgen.render.lowered import atoms, expressions, lower, operations
 from eomgen.render.names import escaped, prefix
 from eomgen.render.parts import Part, divided
@@ -28,6 +35,7 @@ COUNTED = {"add": "+", "subtract": "-", "negate": "-", "multiply": "*", "divide"
 READ = (*ARGUMENTS, "constants")
 ROWS = ("state", "accelerations", "inputs")  # what differs between the states of a batch
 WAVE_KINDS = {"sin": "sine", "cos": "cosine"}
+LANE = "lane"  # the variable of loops over lanes
 WORK = "work"  # the array of values that cross between the parts of a function
 WAVES = "waves"  # the array of sines and cosines of a batch
 
@@ -43,11 +51,20 @@ class Argument:
 
 
 @dataclass(frozen=True)
+class Given:
+    """An array that a loop over lanes reads; `fixed`: of literals."""
+
+    name: str
+    entries: tuple[str, ...]
+    fixed: bool
+
+
+@dataclass(frozen=True)
 class Step:
     """One statement; `kind` says which fields are used.
 
     `assign`; `sine` or `cosine` of an expression, `pair`: both, the cosine called `other`;
-    `require`; `solve`.
+    `require`; `solve`; `alike`: steps in a loop over lanes.
     """
 
     kind: str
@@ -58,7 +75,10 @@ class Step:
     values: tuple[tuple[str, int], ...] = ()  # of a solve: the names that are read, and where
     matrix: tuple[str, ...] = ()
     right: tuple[str, ...] = ()
-    size: int = 0  # of a solve: the number of equations
+    size: int = 0  # of a solve: the number of equations; of a loop that of lanes
+    given: tuple[Given, ...] = ()  # of a loop
+    steps: tuple[Step, ...] = ()  # of a loop; of kind `assign`, or `keep` in an array
+    kept: tuple[str, ...] = ()  # of a loop: arrays that it fills
 
 
 @dataclass(frozen=True)
@@ -69,6 +89,11 @@ class Body:
     steps: tuple[Step, ...]
     results: tuple[tuple[int, str], ...]  # where each goes, and what
     uses: tuple[str, ...]  # which of `READ` and `WORK` are read
+
+    @property
+    def can_fail(self) -> bool:
+        """Whether a pivot is checked."""
+        return any(step.kind in ("require", "solve") for step in self.steps)
 
 
 @dataclass(frozen=True)
@@ -123,9 +148,14 @@ class Routine:
 
 def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
     """A function of the program as text, every argument that it reads in a variable of its own."""
-    lowered = lower(function)
+    whole_function = lower(function if dialect.loops else unrolled(function))
+    lowered, direct = apart(whole_function, groups(program))
     found = _survey(expressions(lowered))
-    text = _Text(dialect, _names(lowered, found, program, dialect), _labels(program))
+    if direct and "constants" not in found.used:
+        found = replace(found, used=(*found.used, "constants"))
+    names = _names(lowered, found, program, dialect)
+    names |= {Value(name): f"m->c{first}[{LANE}]" for name, first in direct.items()}
+    text = _Text(dialect, names, _labels(program))
     cut = divided(lowered, dialect.longest)
     whole = Part(lowered.statements, (), tuple((e, i) for i, e in enumerate(lowered.results)))
     return Routine(
@@ -138,7 +168,7 @@ def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
         0 if cut is None else cut.slots,
         len(lowered.results),
         frozenset(operations(lowered)),
-        _counted(lowered),
+        _counted(unrolled(whole_function)),
         function.arguments,
         found.used,
         _checks_pivots(function),
@@ -193,10 +223,23 @@ def _names(
 ) -> dict[Expression, str]:
     """The variable of everything that a function reads or computes."""
     given = _labels(program)
-    labels = [given[r.argument][r.index] for r in found.reads] + list(found.values)
+    arrays = _arrays(function)
+    values = list(dict.fromkeys([*found.values, *arrays]))
+    labels = [given[r.argument][r.index] for r in found.reads] + values
     codes = escaped(labels, dialect.reserved | _own_names(program, function))
-    read: list[Expression] = [*found.reads, *map(Value, found.values)]
-    return dict(zip(read, codes, strict=True)) | {Read("time", 0): "t"}
+    read: list[Expression] = [*found.reads, *map(Value, values)]
+    names = dict(zip(read, codes, strict=True)) | {Read("time", 0): "t"}
+    for array, lanes in arrays.items():
+        code = names[Value(array)]
+        names[Value(array)] = f"{code}[{LANE}]"
+        names |= {Value(in_lane(array, k)): f"{code}[{k}]" for k in range(lanes)}
+    return names
+
+
+def _arrays(function: Function) -> dict[str, int]:
+    """The values that have one entry for each lane, and how many."""
+    loops = [s for s in function.statements if isinstance(s, Alike)]
+    return {n: s.lanes for s in loops for n in (*(name for name, _ in s.given), *s.kept)}
 
 
 def _own_names(program: Program, function: Function) -> frozenset[str]:
@@ -278,6 +321,20 @@ class _Text:
         if waiting is not None:
             yield self.step(waiting)
 
+    def bare(self, array: Value) -> str:
+        """An array without the lane."""
+        return self.names[array].removesuffix(f"[{LANE}]")
+
+    def array(self, name: Value, entries: Sequence[Expression]) -> Given:
+        """What a loop over lanes reads."""
+        fixed = all(isinstance(e, Number) for e in entries)
+        return Given(self.bare(name), tuple(map(self.of, entries)), fixed)
+
+    def kept(self, statement: Assign, kept: Sequence[str]) -> Step:
+        """An assignment in a loop over lanes."""
+        kind = "keep" if statement.name in kept else "assign"
+        return Step(kind, self.names[Value(statement.name)], self.of(statement.expression))
+
     def step(self, statement: Statement) -> Step:
         """One statement."""
         match statement:
@@ -287,6 +344,14 @@ class _Text:
                 return Step("assign", self.names[Value(name)], self.of(tree))
             case RequirePositive(value, scale):
                 return Step("require", self.names[value], scale=self.of(scale))
+            case Alike(lanes, given, statements, kept):
+                return Step(
+                    "alike",
+                    size=lanes,
+                    given=tuple(self.array(Value(name), entries) for name, entries in given),
+                    steps=tuple(self.kept(s, kept) for s in statements),
+                    kept=tuple(self.bare(Value(name)) for name in kept),
+                )
             case Solve(unknowns, matrix, right):
                 places = [(Value(name), i) for i, name in enumerate(unknowns)]
                 return Step(
