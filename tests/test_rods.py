@@ -131,6 +131,15 @@ def test_the_method_is_taken_in_a_chain_of_a_hundred():
     assert len(compile.FUNCTIONS["accelerations"](machine).statements) < 2500
 
 
+def test_many_chains_under_one_cart_are_not_coupled_each_with_each():
+    text = cart(30)
+    for i in range(2, 31):
+        text = text.replace(f"P{i}: P{i - 1} +", f"P{i}: P0 +")
+    machine = compile.machine_of(read(text, "star.yaml"))
+    assert engine.METHODS[RODS].least(machine.tree) == 900
+    assert machine.engine.method == "articulated bodies"
+
+
 def test_a_sign_of_the_tensions_that_is_wrong_is_seen_by_the_checks(monkeypatch):
     whole = rods._pulled
 
