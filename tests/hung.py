@@ -68,7 +68,7 @@ SLIDING = _spec(
     "prescribed: {w: 0.1*sin(2*t)}",
     "inputs: {F: 1}",
     "points:",
-    "  A: [w + 3*s/5, 4*s/5]",
+    "  A: [w + s, 2*s]",
     "  B: A + [x, t^2]",
     "  C: B + l*[sin(q), -cos(q)]",
     "  D: C + [12*z/13, 5*z/13]",
