@@ -14,7 +14,7 @@ from heapq import heapify, heappop, heappush
 from eomgen.algebra.cost import CYCLES, WEIGHTS
 from eomgen.algebra.graph import Node
 
-WAVE = 25  # cycles until a sine or cosine is there
+LATENCY = {**CYCLES, "sin": 25, "cos": 25}  # cycles until a value is there
 ISSUED = {"sin": 18.0, "cos": 18.0, "divide": 2.0, "sqrt": 2.0}  # cycles that the units are busy
 ANY = 0.5  # of any other operation
 AT_ONCE = 2  # operations that are done while the chain waits one cycle
@@ -27,21 +27,27 @@ def by_critical_path(nodes: Sequence[Node], given: Container[Node]) -> list[Node
 
     nodes: operands first; given: what is there from the start.
     """
+    if not _waits(nodes, given):
+        return list(nodes)
     number = {node: i for i, node in enumerate(nodes)}
     operands = [
         [] if node in given else [number[a] for a in dict.fromkeys(node.operands)] for node in nodes
     ]
-    latency = [_latency(n) if below else 0 for n, below in zip(nodes, operands, strict=True)]
-    rest = _to_the_end(operands, latency)
-    work = sum(WEIGHTS.get(n.operator, 0) for n, c in zip(nodes, latency, strict=True) if c)
-    if work > AT_ONCE * max(rest, default=0):
-        return list(nodes)
-    busy = [ISSUED.get(n.operator, ANY) if c else 0.0 for n, c in zip(nodes, latency, strict=True)]
-    return [nodes[i] for i in _listed(operands, latency, rest, busy)]
+    computed = list(zip(nodes, operands, strict=True))
+    latency = [LATENCY.get(n.operator, 0) if below else 0 for n, below in computed]
+    busy = [ISSUED.get(n.operator, ANY) if below else 0.0 for n, below in computed]
+    return [nodes[i] for i in _listed(operands, latency, busy)]
 
 
-def _latency(node: Node) -> int:
-    return WAVE if node.operator in ("sin", "cos") else CYCLES.get(node.operator, 0)
+def _waits(nodes: Sequence[Node], given: Container[Node]) -> bool:
+    """Whether the longest chain takes more than the operations side by side."""
+    work, ready = 0, dict.fromkeys(nodes, 0)
+    for node in nodes:
+        if node.operands and node not in given:
+            start = max([ready[a] for a in node.operands])
+            ready[node] = start + LATENCY.get(node.operator, 0)
+            work += WEIGHTS.get(node.operator, 0)
+    return work <= AT_ONCE * max(ready.values(), default=0)
 
 
 def _to_the_end(operands: Sequence[Sequence[int]], latency: Sequence[int]) -> list[int]:
@@ -56,10 +62,10 @@ def _to_the_end(operands: Sequence[Sequence[int]], latency: Sequence[int]) -> li
 def _listed(
     operands: Sequence[Sequence[int]],
     latency: Sequence[int],
-    rest: Sequence[int],
     busy: Sequence[float],
 ) -> list[int]:
     """Numbers in the order in which one unit would start them."""
+    rest = _to_the_end(operands, latency)
     users: list[list[int]] = [[] for _ in operands]
     for i, below in enumerate(operands):
         for k in below:
