@@ -225,7 +225,7 @@ def test_check_goes_on_after_a_bad_spec_and_answers_the_worst(call):
     said = call("check", "wrong.yaml", "false.yaml", "missing.yaml", "good.yaml")
     assert said.code == 2
     (line,) = said.output.splitlines()
-    assert line.startswith("good.yaml: 1 degree of freedom; engine: articulated bodies, ")
+    assert line.startswith("good.yaml: 1 degree of freedom; engine: tensions of rods, ")
     assert "; checked: Lagrange = Newton-Euler" in line
     assert "dimensions of" in line
     for name in ("wrong.yaml:4:1:", "false.yaml: error: expect", "missing.yaml: error: cannot"):
