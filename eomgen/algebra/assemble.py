@@ -10,6 +10,7 @@ from math import prod
 
 from eomgen.algebra.graph import Node, below, term
 from eomgen.algebra.ldl import Pivots
+from eomgen.algebra.order import by_critical_path
 from eomgen.program import (
     Apply,
     Assign,
@@ -52,8 +53,7 @@ def assemble(
 ) -> Function:
     """The function that computes `results`, and checks the pivots that these depend on.
 
-    What no result depends on is not computed. Values are computed in the order in which the
-    derivation made them.
+    What no result depends on is not computed.
     """
     if prod(shape) != len(results):
         raise ValueError(f"{name} has {len(results)} results, its shape is {shape}")
@@ -94,7 +94,9 @@ def written(
     named = {*partners, *checks, *_used_twice(nodes, wanted)} - known
     draft = _Draft(frozenset(named), partners, given, names=names)
     # depth first, 2 to 15 % less values would be alive at a time, and the machine code no better
-    for node in nodes:
+    # the least of several divisors is checked before any of them divides
+    least = below([pivot for pivot in checks if pivot.operator == "min"], given.__contains__)
+    for node in dict.fromkeys([*least, *by_critical_path(nodes, given)]):
         if node in checks:
             _place_all(draft, below([checks[node]], stop=draft.knows))
         _place_all(draft, (node,))

@@ -61,12 +61,8 @@ def _operations(nodes: Iterable[Node], prepared: int) -> int:
     return total
 
 
-def longest_chain(results: Iterable[Node], prepared: int = 0) -> int:
-    """The cycles that pass from the arguments, sines and cosines known, to the last result."""
-    return _longest_chain(below(results), prepared)
-
-
 def _longest_chain(nodes: Iterable[Node], prepared: int) -> int:
+    """The cycles that pass from the arguments, sines and cosines known, to the last result."""
     moving = ~prepared
     ready: dict[Node, int] = {}
     for node in nodes:
