@@ -37,7 +37,7 @@ def of(study: Study) -> Report:
     shipped = code.program
     files = render(code, TARGETS["c"], environment())
     (file,) = (name for name in files if name.endswith(".c"))
-    sampled = states.draw(study, _affordable(shipped))
+    sampled = states.draw(study, _affordable(shipped), STATES)
     bench = Bench(shipped, sampled)
     bench.prove(study.program)
     said, measured = engines(shipped, files, sampled)

@@ -28,8 +28,10 @@ LATEST = 3.0  # [s]
 FASTEST = 2.0  # of rates and inputs
 
 
-def draw(study: Study, count: int) -> Sampled:
+def draw(study: Study, count: int, wanted: int | None = None) -> Sampled:
     """So many random states for the program of a study, always the same ones; fewer if rare.
+
+    wanted: what the user is told were wanted, where there is time for fewer.
 
     Raises:
         CheckError: no state was found.
@@ -43,7 +45,7 @@ def draw(study: Study, count: int) -> Sampled:
     given = samples.constants(study.model)
     parameters = [given[p.symbol] for p in machine.free_parameters(study.model)]
     exact = (_in_float(a) for a in (time, state, inputs, np.array(parameters, float)))
-    return Sampled(count, *exact)
+    return Sampled(count if wanted is None else wanted, *exact)
 
 
 def _in_float(values: Array) -> Array:
