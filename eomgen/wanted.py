@@ -10,7 +10,7 @@ from eomgen.errors import UsageError
 FORMULATIONS = ("minimal", "nullspace", "multiplier")
 NAMES = ("auto", *FORMULATIONS)
 INTEGRATORS = (  # of fixed steps, in generated code, then adaptive
-    "semi-euler", "verlet", "rk4", "dopri5", "rosenbrock2", "midpoint",
+    "semi-euler", "semi-euler-damped", "verlet", "rk4", "dopri5", "rosenbrock2", "midpoint",
     "dop853", "lsoda", "radau", "cvode",
 )  # fmt: skip
 LARGEST = Fraction(1, 5)  # alpha * h: above, Baumgarte's terms cost the integrator its order
@@ -25,12 +25,14 @@ class Wanted:
 
     notes: people will read the closed form; else a scene too large for one needs none.
     method: one of `METHODS`, which is shown and compared with the others; None: as ever.
+    functions: the only functions that will be read of the program; (): all.
     """
 
     formulation: str = "auto"
     baumgarte: Fraction = Fraction(0)
     notes: bool = False
     method: str | None = None
+    functions: tuple[str, ...] = ()
 
 
 AUTO = Wanted()

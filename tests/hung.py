@@ -64,18 +64,20 @@ BRANCHED = _spec(
 SLIDING = _spec(
     "Sliders on sliders, shaken",
     "parameters: {m: 1.3, l: 0.4, M: 3}",
-    "coordinates: {s: 1, x: 1, q: 1, z: 1}",
+    "coordinates: {s: 1, x: 1, q: 1, z: 1, p: 1}",
     "prescribed: {w: 0.1*sin(2*t)}",
     "inputs: {F: 1}",
     "points:",
-    "  A: [w + 3*s/5, 4*s/5]",
+    "  A: [w + s, 2*s]",
     "  B: A + [x, t^2]",
     "  C: B + l*[sin(q), -cos(q)]",
     "  D: C + [12*z/13, 5*z/13]",
+    "  E: A + [l, w^2]",
+    "  G: E + l*[cos(p), sin(p)]",
     "bodies:",
     *(
         f"  {n}: {{mass: {mass}, at: {n.upper()}}}"
-        for n, mass in zip("abcd", ("M", "m", "2*m", "m"), strict=True)
+        for n, mass in zip("abcdeg", ("M", "m", "2*m", "m", "m/3", "m"), strict=True)
     ),
     "forces: [{on: d, from: a, force: [F, -F/2]}]",
 )
@@ -100,7 +102,21 @@ SPHERICAL = _spec(
     space="solid",
     gravity="[0.1, -0.2, -9.7]",
 )
+LINE = _spec(
+    "Masses on a line, each against the one before",
+    "parameters: {m: 1.3, k: 3, a: 0.2}",
+    "coordinates: {x: 1, y: 1, z: 1}",
+    "inputs: {F: 1}",
+    "points: {A: [x], B: 'A + [2*y + sin(t)]', C: 'B + [z]'}",
+    "bodies: {ma: {mass: m, at: A}, mb: {mass: 2*m, at: B}, mc: {mass: m, at: C}}",
+    "springs: [{between: [ma, mc], stiffness: k, free_length: a}]",
+    "dampers: [{along: y, damping: 0.3}]",
+    "forces: [{on: mc, force: [F]}]",
+    space="line",
+    gravity="[-2]",
+)
 SCENES = {
+    "line": LINE,
     **{f"cart_{n}": cart(n) for n in (1, 2, 4, 8)},
     "loaded": LOADED,
     "branched": BRANCHED,

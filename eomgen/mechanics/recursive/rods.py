@@ -99,7 +99,7 @@ class Scene:
     def along_link(self, direction: Vector[Node], i: int) -> Node:
         """direction . e_i; in the plane the same value, but for the sign, for (a, b) and (b, a)."""
         if len(direction) != 2:
-            return self.short.of(dot(direction, self.particles[i].link))
+            return dot(direction, self.particles[i].link)
         across = self.particles[i].ways[0].direction
         first, second = sorted((direction, across), key=lambda v: [entry.id for entry in v])
         turned = first[0] * second[1] - first[1] * second[0]
@@ -107,7 +107,8 @@ class Scene:
 
     def links(self, i: int, k: int) -> Node:
         """e_i . e_k."""
-        return self.short.of(dot(self.particles[i].link, self.particles[k].link))
+        product = dot(self.particles[i].link, self.particles[k].link)
+        return self.short.of(product) if i == k else product
 
 
 def _guided(scene: Scene, i: int, way: Way, known: tuple[Values, Values]) -> Node:
@@ -185,8 +186,7 @@ def _acceleration(
     total = dot(direction, add(scene.falling, particle.carried))
     total = total + particle.drift.along(direction, scene.short)
     for way in particle.ways:
-        moved = scene.short.of(dot(direction, way.direction))
-        total = total + way.size * motion[way.coordinate] * moved
+        total = total + way.size * motion[way.coordinate] * dot(direction, way.direction)
     return [(one, total)]
 
 
