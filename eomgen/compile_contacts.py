@@ -101,7 +101,8 @@ def _motions(scene: Touching) -> Iterator[Function]:
             yield _accelerations(mode, found)
             yield _forces(scene, mode, found)
             yield from _surface_forces(scene, mode, found)
-            yield from _of_guides(scene, mode, found)
+            yield from _multipliers(scene, mode, found)
+            yield from _outputs(scene, mode, found)
         yield _events(scene, mode, found)
         yield _conditions(scene, mode, found)
         yield from _jam(mode, found)
@@ -149,14 +150,17 @@ def _surface_forces(scene: Touching, mode: Mode, found: Motion) -> Iterator[Func
     yield assemble(f"surface_forces_{mode.name}", about, shape, values, found.pivots)
 
 
-def _of_guides(scene: Touching, mode: Mode, found: Motion) -> Iterator[Function]:
-    """Multipliers, and outputs with accelerations, where there is no motion without a mode."""
+def _multipliers(scene: Touching, mode: Mode, found: Motion) -> Iterator[Function]:
+    """Multipliers, where there is no motion without a mode."""
+    if scene.machine.model.guides:
+        values = list(found.multipliers.values())
+        about = f"lambda of the independent rows in the mode {mode.name}"
+        yield assemble(f"multipliers_{mode.name}", about, (len(values),), values, found.pivots)
+
+
+def _outputs(scene: Touching, mode: Mode, found: Motion) -> Iterator[Function]:
+    """Outputs, where they tell of accelerations."""
     machine = scene.machine
-    if not machine.model.guides:
-        return
-    values = list(found.multipliers.values())
-    about = f"lambda of the independent rows in the mode {mode.name}"
-    yield assemble(f"multipliers_{mode.name}", about, (len(values),), values, found.pivots)
     if holds_motion(machine.model):
         pairs = zip(machine.model.coordinates, found.accelerations, strict=True)
         outputs = machine.outputs_with({c.acceleration: a for c, a in pairs})

@@ -19,6 +19,7 @@ from eomgen.mechanics.contacts_motion import Motion
 from eomgen.mechanics.vectors import dot
 from eomgen.program import Function
 
+FRICTIONLESS = "frictionless_accelerations"
 ABOUT = "energy [J], T + V without explicit time, and the power [W] that changes it"
 
 
@@ -60,6 +61,13 @@ def _slip_rows(contact: Contact) -> Iterator[Row[Node]]:
     for slip in contact.touch.slips if contact.touch is not None else ():
         row = contact.row
         yield replace(row, residual=None, rate=slip.speed, jacobian=slip.jacobian, gamma=slip.gamma)
+
+
+def frictionless(machine: Machine) -> Function:
+    """What would move a scene whose constraints have friction if they had none."""
+    values, pivots = machine.solution
+    about = "u' without friction: the direction in which a slip in space begins"
+    return assemble(FRICTIONLESS, about, (len(values),), values, pivots)
 
 
 def is_conserved(machine: Machine) -> bool:

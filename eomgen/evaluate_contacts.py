@@ -97,7 +97,7 @@ def _motion(chosen: Engine, scene: Touching, mode: Mode, state: State) -> Result
         found["accelerations"] = _named(chosen, state, f"accelerations_{name}", coordinates)
         found["contact_forces"] = _named(chosen, state, f"contact_forces_{name}", names)
         found |= _forces(chosen, scene, mode, state)
-        if model.guides and holds_motion(model):
+        if holds_motion(model):
             outputs = [o.name for o in model.outputs]
             found["outputs"] = _named(chosen, state, f"outputs_{name}", outputs)
     found["events"] = _named(chosen, state, f"events_{name}", list(mode.events))

@@ -60,15 +60,12 @@ def rows(setup: Setup, choice: Choice, outputs: Array) -> Iterator[Rows]:
         CheckError: the solver gives up, or a contact does what the spec does not describe.
     """
     start = setup.start
-    size = len(start.state)
-    yield Rows(outputs[:1], start.state.reshape(1, size), np.zeros(1))
     scene = contact_scene(setup, float(outputs[-1] - outputs[0]))
     if scene is not None:
         yield from hybrid.pieces(scene, outputs, start.state, choice.limits)
-    elif choice.is_fixed:
-        yield from _fixed(setup, choice, outputs)
-    else:
-        yield from _adaptive(setup, choice, outputs)
+        return
+    yield Rows(outputs[:1], start.state.reshape(1, -1), np.zeros(1))
+    yield from (_fixed if choice.is_fixed else _adaptive)(setup, choice, outputs)
 
 
 def _flow(setup: Setup) -> str | None:

@@ -57,11 +57,6 @@ def checked(wish: Wish, study: Study) -> Wish:
     Raises:
         UsageError: it contradicts itself or the scene.
     """
-    if study.model.guides:
-        raise UsageError(
-            "simulate does not run friction on two-sided constraints: the motion is that of a "
-            "mode, stick or slip, which `evaluate` and the generated code tell"
-        )
     has_contacts = touching_of(study) is not None
     if wish.step is not None and wish.method in adaptive.NAMES:
         raise UsageError(
@@ -97,10 +92,11 @@ def choose(wish: Wish, setup: Setup, span: float) -> Choice:
     Raises:
         UsageError: what the choice needs is not installed.
     """
-    values = eigenvalues(setup)
-    limits = _limits(wish, touching_of(setup.study) is not None)
-    if touching_of(setup.study) is not None:
+    has_contacts = touching_of(setup.study) is not None
+    limits = _limits(wish, has_contacts)
+    if has_contacts:
         return Choice("dop853", "contacts: their events are located", limits=limits)
+    values = eigenvalues(setup)
     name = wanted(wish, setup.study)
     if name == AUTO:
         name, why = _automatic(setup, values, span)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -59,9 +59,8 @@ def setup(
         UsageError: the method is not for this scene, or the compiler fails.
     """
     steps = stepping.of(study, tuple(m for m in methods if m in METHODS))
-    machine = study.compiled
     flow = _flow(study)
-    more = (compile_steps.state_jacobian(machine), *flow, *_contacts(study), *extra)
+    more = (*flow, *_moving(study), *extra)
     steps = replace(steps, program=stepping.extended(steps.program, more))
     engine, is_compiled = _engine(steps, start.given)
     return Setup(
@@ -70,7 +69,7 @@ def setup(
         engine=engine,
         start=start,
         flow="energy_flow" if flow else None,
-        is_conserved=bool(flow) and compile_flow.is_conserved(machine),
+        is_conserved=bool(flow) and compile_flow.is_conserved(study.compiled),
         is_compiled=is_compiled,
     )
 
@@ -106,9 +105,15 @@ def _moves(study: Study) -> bool:
     return any(row.rate.leaves & time.leaves for row in study.machine.rows)
 
 
-def _contacts(study: Study) -> tuple[Function, ...]:
+def _moving(study: Study) -> Iterator[Function]:
+    """What the methods call: of a scene with contacts the projections of its modes."""
     touching = touching_of(study)
-    return () if touching is None else tuple(compile_flow.projections(touching))
+    if touching is None:
+        yield compile_steps.state_jacobian(study.compiled)
+        return
+    yield from compile_flow.projections(touching)
+    if study.model.guides:
+        yield compile_flow.frictionless(study.machine)
 
 
 def contact_scene(made: Setup, span: float) -> contact_modes.Scene | None:
@@ -132,6 +137,7 @@ def contact_scene(made: Setup, span: float) -> contact_modes.Scene | None:
         one_sided=tuple(names),
         impacts={name: f for name, f in impacts.items() if f in known},
         span=span,
+        **({"unresisted": compile_flow.FRICTIONLESS} if made.study.model.guides else {}),
     )
 
 

@@ -60,7 +60,8 @@ def values(setup: Setup, found: Rows) -> Array:
         names = [c.name for c in setup.study.model.coordinates]
         chosen = [i for i, name in enumerate(names) if name not in program]
         parts.append(engine.sweep("all_coordinates", found.times, found.states)[:, chosen])
-    for name in ("outputs", "energy"):
+    of_mode = f"outputs_{found.mode}"
+    for name in (of_mode if setup.steps.has(of_mode) else "outputs", "energy"):
         parts.append(engine.sweep(name, found.times, found.states))
     return np.hstack(parts)
 

@@ -6,6 +6,7 @@ from math import cos, radians, sin, sqrt, tan
 import numpy as np
 import pytest
 from scenes import study_of, text_of
+from test_friction_guides import BLOCK
 from tools import tool
 
 from eomgen import simulate_run, study
@@ -165,3 +166,53 @@ def test_an_impact_that_the_spec_does_not_describe_ends_the_run():
 def test_a_method_that_does_not_locate_events_is_refused(words):
     with pytest.raises(UsageError, match="run by dop853"):
         simulate_run.job(study_of("bouncing_ball"), Request("{}", 1.0, **words))
+
+
+def test_a_bead_swings_on_a_rough_wire_until_it_sticks():
+    """v' = -g sin a - sign(v) mu (g cos a + v^2/R), R = p/(2 cos^3 a), along the wire."""
+    solve_ivp = pytest.importorskip("scipy.integrate").solve_ivp
+    job, rows = finished(study_of("bead_on_rough_wire"), 2.0)
+    (first, one), (second, two) = modes(job)
+    assert (one, two) == ("slip_plus", "stick")
+
+    def along(side):
+        def slope(t, y):
+            a = np.arctan(2 * y[0] / 0.8)
+            press = G * cos(a) + y[1] ** 2 * 2 * cos(a) ** 3 / 0.8
+            return [y[1] * cos(a), -G * sin(a) - side * 0.3 * press]
+
+        return slope
+
+    def stops(t, y):
+        return y[1]
+
+    stops.terminal = True
+    start = [0.5, -sqrt(1 + 1.25**2)]
+    back = solve_ivp(along(-1), (0, 2), start, events=stops, rtol=1e-12, atol=1e-12)
+    assert first == pytest.approx(back.t[-1], abs=1e-8)
+    begin = (back.t[-1], 2)
+    # it starts again at rest, on the steep side
+    forth = solve_ivp(along(1), begin, [back.y[0, -1], 1e-9], events=stops, rtol=1e-12, atol=1e-12)
+    assert second == pytest.approx(forth.t[-1], abs=1e-7)
+    assert rows["x"][-1] == pytest.approx(forth.y[0, -1], abs=1e-8)
+    assert abs(2 * rows["x"][-1] / 0.8) < 0.3
+    assert job.faults() == []
+
+
+def test_a_body_of_full_inertia_runs_in_a_rough_skew_slot():
+    job, rows = finished(study.of_text(BLOCK, "slot.yaml"), 0.4, inputs=("F=3",), output_step=1e-3)
+    assert job.faults() == []
+    assert job.verdict.relative_energy_error < 1e-9
+    assert all(worst < 1e-12 for worst in job.verdict.residuals.values())
+    # the output x'' is that of the mode, with its friction
+    slope = (rows["x'"][2:] - rows["x'"][:-2]) / 2e-3
+    np.testing.assert_allclose(rows["u"][1:-1], slope, atol=1e-3)
+
+
+def test_outputs_with_accelerations_are_those_of_the_mode():
+    text = SPATIAL + "outputs: {a: x''}\n"
+    job, rows = finished(study.of_text(text, "puck.yaml"), 4.0, inputs=("F=0", "W=0"))
+    stop = modes(job)[0][0]
+    sliding, resting = rows["t"] < stop, rows["t"] > stop
+    np.testing.assert_allclose(rows["a"][sliding], -0.6 * 0.25 * G, rtol=1e-6)
+    np.testing.assert_allclose(rows["a"][resting], 0, atol=1e-12)

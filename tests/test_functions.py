@@ -23,6 +23,7 @@ from scenes import SLOW, model_of, study_of
 from eomgen import compile, formulation, interpreter
 from eomgen.algebra import derive, jacobian
 from eomgen.algebra.arithmetic import FLOAT, evaluate
+from eomgen.algebra.cost import operations
 from eomgen.algebra.elementary import absolute, maximum, minimum, sign
 from eomgen.algebra.graph import Graph, below, sqrt
 from eomgen.checks import samples
@@ -182,13 +183,13 @@ def test_forward_or_reverse_is_chosen_by_what_it_costs():
         total = (total + a) * (total - a * a)
     (row,) = jacobian.jacobian([total], x)
     forward = jacobian._forward([total], x, derive.RULES)
-    assert jacobian.cost(row) < jacobian.cost(forward[0]) / 2
+    assert operations(row) < operations(forward[0]) / 2
     many = [total * a for a in x]
     column = [entry for (entry,) in jacobian.jacobian(many, x[:1])]
     numbers = dict(zip(x, (0.1 * i + 0.3 for i in range(12)), strict=True))
     assert evaluate(row, numbers, FLOAT) == pytest.approx(evaluate(forward[0], numbers, FLOAT))
     backward = [derive.gradient(y, x[:1])[0] for y in many]
-    assert jacobian.cost(column) < jacobian.cost(backward)
+    assert operations(column) < operations(backward)
 
 
 def test_at_a_kink_the_derivative_is_the_mean_of_both_sides():
@@ -256,10 +257,10 @@ def test_a_scene_that_is_solved_in_a_loop_has_all_columns_from_one_factorisation
 
 
 def test_differentiating_the_inverse_dynamics_costs_less_than_the_solution():
-    scene = motion("cart_three_pendulums")
+    scene = motion("skew_arm")
     rows, _ = sensitivity.accelerations(scene, scene.state)
     direct = jacobian.jacobian(scene.machine.solution[0], scene.state)
-    assert jacobian.cost(sum(rows, [])) < 0.9 * jacobian.cost(sum(direct, []))
+    assert operations(sum(rows, [])) < 0.9 * operations(sum(direct, []))
 
 
 # ---- what can be asked for

@@ -24,12 +24,16 @@ LONG = {"andrews_squeezer", "andrews_squeezer-minimal", *(c for c in CASES if st
 TRUE = 1e-11  # of the largest result
 
 
+OF_A_MODE = {"state_jacobian", "input_jacobian", "parameter_jacobian", "time_jacobian"}
+
+
 def names(case):
     """Every function that a case has."""
     model = compiled(case).model
     missing = set() if model.inputs else {"input_jacobian"}
     missing |= set() if model.parameters else {"parameter_jacobian"}
     missing |= {"base_regressor"} if compiled(case).kept else set()
+    missing |= OF_A_MODE if model.guides else set()
     if case in LONG:
         return ["inverse_dynamics", "state_jacobian"]
     everywhere = [f"{kind}:{name}" for kind in table.ROWS_AT for name in places.names(model)]

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.slow
 SHORT = 0.5  # seconds of motion
 FAST = {"andrews_squeezer": 0.002}  # seconds, of a mechanism that turns in milliseconds
 CONSERVATIVE = """
-atwood_machine central_force double_pendulum elastic_pendulum heavy_top rigid_body
+atwood_machine ball_joints central_force double_pendulum elastic_pendulum heavy_top rigid_body
 rolling_cylinder simple_pendulum slider_pendulum_free slider_spring_pendulum sliding_ladder
 spherical_pendulum sprung_pair
 """.split()  # noqa: SIM905

@@ -76,7 +76,7 @@ ALLOWED: dict[str, set[str]] = {
     "chart": RECORDS
     | {"compile_steps", "formulation", "integrators", "numerics", "render", "simulate"}
     | {"simulate_method", "simulate_setup", "stepping", "study", "wanted"},
-    "charting": RECORDS | {"chart", "files", "spec", "study"},
+    "charting": RECORDS | {"chart", "files", "simulate_setup", "spec", "study"},
     "cli_chart": {"charting", "cli_common", "errors", "files"},
     "render": RECORDS | {"algebra", "latex_name", "mechanics", "integrators"},
     "numerics": RECORDS | {"render", "interpreter", "integrators"},

@@ -81,7 +81,11 @@ def test_every_method_gives_the_accelerations_of_virtual_work(name, method):
     matrix, force = matrix_values(machine, wanted.mass_matrix), values(machine, right)
     solved = np.linalg.solve(np.moveaxis(matrix, 2, 0), force.T[..., None])[..., 0].T
     for tree in (machine.tree, lumped(machine.tree)):
-        found, _ = engine.METHODS[method](tree, loads.of(machine.kinematics, tree))
+        applied = loads.of(machine.kinematics, tree)
+        solution = engine.METHODS[method].solve(machine.kinematics, tree, applied)
+        if solution is None:
+            continue
+        found, _ = solution
         conditioned = 1e-12 * np.linalg.cond(np.moveaxis(matrix, 2, 0))
         worst = np.max(np.abs(values(machine, found) - solved), axis=0)
         # a rounded force of size one is an acceleration of at most 1 / least eigenvalue
@@ -98,11 +102,13 @@ def test_the_engine_takes_the_cheapest_and_says_which(name):
     prepared = 0
     for p in machine.model.parameters:
         prepared |= machine.kinematics.algebra.of(p.symbol).leaves
-    assert cost.operations(chosen.accelerations, prepared) == chosen.operations
+    assert cost.of(chosen.accelerations, prepared) == chosen.cost
     for tree in (machine.tree, lumped(machine.tree)):
         applied = loads.of(machine.kinematics, tree)
         for method in engine.METHODS.values():
-            assert cost.operations(method(tree, applied)[0], prepared) >= chosen.operations
+            solution = method.solve(machine.kinematics, tree, applied)
+            if solution is not None:
+                assert cost.of(solution[0], prepared).total >= chosen.cost.total
 
 
 def test_lumping_pays_and_changes_nothing():

@@ -57,13 +57,21 @@ def assemble(
     if prod(shape) != len(results):
         raise ValueError(f"{name} has {len(results)} results, its shape is {shape}")
     reached = set(below(results))
-    checks = tuple(pair for pair in pivots if _divisor(pair[0]) in reached)
+    checks = tuple(pair for pair in pivots if not reached.isdisjoint(_divisors(pair[0])))
     return written(Function(name, about, shape, (), ()), results, checks, {})
 
 
-def _divisor(pivot: Node) -> Node:
-    """What is left of a pivot as a denominator: signs and numbers are taken out of it."""
-    return term(pivot.operands[0] if pivot.operator == "negate" else pivot)[1]
+def _divisors(pivot: Node) -> list[Node]:
+    """What is divided by: the pivot without signs and numbers; the least of several is each."""
+    stack, found = [pivot], []
+    while stack:
+        value = stack.pop()
+        value = term(value.operands[0] if value.operator == "negate" else value)[1]
+        if value.operator == "min":
+            stack.extend(value.operands)
+        else:
+            found.append(value)
+    return found
 
 
 def written(

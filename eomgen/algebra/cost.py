@@ -1,32 +1,78 @@
-"""What a program of graph nodes would cost, counted in floating-point operations."""
+"""What values on a graph cost: floating-point operations, and the longest chain among them.
+
+A processor computes several values at once that do not need each other, so a method with fewer
+operations in one long chain may take longer than one with more of them side by side.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
 
 from eomgen.algebra.graph import Node, below
 from eomgen.program import OPERATORS
 
-WEIGHTS = dict.fromkeys(OPERATORS, 20) | {  # flops; a sine with its cosine counts as one pair
-    "add": 1, "subtract": 1, "multiply": 1, "negate": 0, "divide": 5, "sqrt": 5, "pi": 0,
-    "sin": 10, "cos": 10, "abs": 1, "sign": 1, "min": 1, "max": 1,
-    "number": 0, "read": 0, "symbol": 0, "solved": 0,
+FREE = dict.fromkeys(("number", "read", "symbol", "solved", "pi", "negate"), 0)
+# in additions; a sine with its cosine counts as one pair, any other function as two of them
+WEIGHTS = dict.fromkeys(OPERATORS, 20) | FREE | {
+    "add": 1, "subtract": 1, "multiply": 1, "divide": 5, "sqrt": 5, "sin": 10, "cos": 10,
+    "abs": 1, "sign": 1, "min": 1, "max": 1,
+}  # fmt: skip
+# latencies of a present processor; every method waits for the same sines and cosines first
+CYCLES = dict.fromkeys(OPERATORS, 45) | FREE | {
+    "add": 4, "subtract": 4, "multiply": 4, "divide": 13, "sqrt": 18, "sin": 0, "cos": 0,
+    "abs": 1, "sign": 4, "min": 4, "max": 4,
 }  # fmt: skip
 
 
-def operations(results: Iterable[Node], prepared: int = 0) -> int:
-    """The weighted operations that results take, each shared value once.
+@dataclass(frozen=True)
+class Cost:
+    """What a call computes, and how long it must wait."""
 
-    prepared: bit set of leaves; what depends on these only is known before and counts nothing.
+    operations: int  # weighted, in additions
+    cycles: int  # of the longest chain
+
+    @property
+    def total(self) -> int:
+        """About the time of a call: an operation takes as long as a cycle of waiting."""
+        return self.operations + self.cycles
+
+
+def of(results: Collection[Node], prepared: int = 0) -> Cost:
+    """What results cost together, each shared value once.
+
+    prepared: bit set of leaves; what depends on these only is known before and costs nothing.
     """
+    return Cost(operations(results, prepared), longest_chain(results, prepared))
+
+
+def operations(results: Iterable[Node], prepared: int = 0) -> int:
+    """The weighted operations that results take."""
     return sum(
-        WEIGHTS.get(node.operator) or _system(node)
+        WEIGHTS[node.operator] if node.operator in WEIGHTS else _system(node)
         for node in below(results)
-        if node.leaves & ~prepared and WEIGHTS.get(node.operator) != 0
+        if node.leaves & ~prepared
     )
 
 
+def longest_chain(results: Iterable[Node], prepared: int = 0) -> int:
+    """The cycles that pass from the arguments, sines and cosines known, to the last result."""
+    ready: dict[Node, int] = {}
+    for node in below(results):
+        start = max((ready[a] for a in node.operands), default=0)
+        takes = CYCLES[node.operator] if node.operator in CYCLES else _chain_of_system(node)
+        ready[node] = start + takes if node.leaves & ~prepared else 0
+    return max(ready.values(), default=0)
+
+
 def _system(node: Node) -> int:
-    """A system solved in a loop: n^3 / 3 and twice n^2."""
+    """A system solved in a loop: n^3 / 3, and 2 n^2 for each right side."""
     size: int = node.datum
-    return size**3 // 3 + 2 * size**2
+    columns = len(node.operands) // size - (size + 1) // 2
+    return size**3 // 3 + 2 * size**2 * columns
+
+
+def _chain_of_system(node: Node) -> int:
+    """One row after the other is eliminated and filled in."""
+    size: int = node.datum
+    return size * (CYCLES["divide"] + 4 * CYCLES["multiply"])

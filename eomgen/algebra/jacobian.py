@@ -7,33 +7,16 @@ root is that of x / max(sqrt(x), 2^-100) / 2: zero at rest for laws such as |v| 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
+from eomgen.algebra.cost import operations
 from eomgen.algebra.derive import HALF, RULES, Rules, direction, gradient
 from eomgen.algebra.elementary import BUILD, maximum
 from eomgen.algebra.graph import Node, below
 
 Rows = list[list[Node]]
 LEAST_ROOT = Fraction(1, 2**100)  # below every root of a normal number in single precision
-FREE = ("number", "read", "symbol", "solved", "pi")
-WEIGHTS = {"add": 1, "subtract": 1, "multiply": 1, "negate": 1, "divide": 5, "sqrt": 5}
-COSTLY = 10  # any other function; a sine with its cosine is two
-
-
-def cost(nodes: Iterable[Node]) -> int:
-    """About how long these values take to compute together, in additions."""
-    return sum(_weight(node) for node in below(nodes))
-
-
-def _weight(node: Node) -> int:
-    if node.operator in FREE:
-        return 0
-    if node.operator == "system":
-        size: int = node.datum
-        columns = len(node.operands) // size - (size + 1) // 2
-        return size**3 // 3 + 2 * size**2 * columns
-    return WEIGHTS.get(node.operator, COSTLY)
 
 
 def jacobian(results: Sequence[Node], variables: Sequence[Node]) -> Rows:
@@ -41,7 +24,9 @@ def jacobian(results: Sequence[Node], variables: Sequence[Node]) -> Rows:
     rules = _guarded(results)
     forward = _forward(results, variables, rules)
     reverse = [gradient(node, variables, rules) for node in results]
-    return min((forward, reverse), key=lambda rows: cost(entry for row in rows for entry in row))
+    return min(
+        (forward, reverse), key=lambda rows: operations(entry for row in rows for entry in row)
+    )
 
 
 def _forward(results: Sequence[Node], variables: Sequence[Node], rules: Rules) -> Rows:

@@ -11,8 +11,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from eomgen.algebra import ldl
+from eomgen.algebra.cost import operations
 from eomgen.algebra.graph import Node
-from eomgen.algebra.jacobian import Rows, cost, jacobian, substituted
+from eomgen.algebra.jacobian import Rows, jacobian, substituted
 from eomgen.algebra.ldl import Pivots
 from eomgen.compile import LARGEST_UNROLLED
 from eomgen.errors import UsageError
@@ -43,7 +44,9 @@ def accelerations(motion: Motion, variables: Sequence[Node]) -> tuple[Rows, Pivo
         return implicit
     solution, pivots = motion.machine.solution
     direct = (jacobian(solution, variables), pivots)
-    return min(implicit, direct, key=lambda pair: cost(entry for row in pair[0] for entry in row))
+    return min(
+        implicit, direct, key=lambda pair: operations(entry for row in pair[0] for entry in row)
+    )
 
 
 def _in_a_loop(motion: Motion) -> bool:

@@ -43,6 +43,7 @@ class Scene:
     one_sided: tuple[str, ...]  # contacts that can open, in the order of the gaps
     impacts: Mapping[str, str]  # contact -> function of its impact
     span: float  # of the run [s]
+    unresisted: str = "accelerations"  # the function of those without friction
 
     @cached_property
     def functions(self) -> dict[str, Function]:
@@ -220,7 +221,7 @@ def _started(scene: Scene, mode: Mode, t: float, state: Array) -> Array:
     if all(slip > least for slip in _sliding(scene, mode, t, start)):
         return start
     # friction has no direction at rest: begin along what would move it without friction
-    push = np.concatenate([0 * state[:n], scene.call("accelerations", t, start)])
+    push = np.concatenate([0 * state[:n], scene.call(scene.unresisted, t, start)])
     moved = scene.projected(mode, t, start + least * push)
     slips = _sliding(scene, mode, t, moved)
     if not min(slips, default=0.0) > 0:

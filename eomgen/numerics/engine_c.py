@@ -105,7 +105,7 @@ class MarchC:
 
     def __init__(self, engine: EngineC, method: Method, flow: str | None, state: Array) -> None:
         self.engine, self.work = engine, 0.0
-        self.step = engine.symbol(f"step_{method.spelled}")
+        self.step = engine.symbol(f"prepared_step_{method.spelled}")
         self.flow = None if flow is None else engine.symbol(flow)
         self.state = np.array(state, engine.kind)
         self.carry = np.zeros_like(self.state)

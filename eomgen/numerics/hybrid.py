@@ -72,15 +72,16 @@ class _Leg:
 
 
 def pieces(scene: Scene, outputs: Array, state: Array, limits: Tolerances) -> Iterator[Rows]:
-    """The rows at outputs[1:] with the events up to there; the run starts at outputs[0].
+    """The rows at the output times, the first one the start, with the events up to there.
 
     Raises:
         CheckError: an impact is not described, no mode holds, or the solver gives up.
         UsageError: SciPy is not installed.
     """
     impacts, t, done, total = _Impacts(scene.span), float(outputs[0]), 1, 0.0
+    first = state.reshape(1, -1)
     mode, state, rows = _entered(scene, impacts, t, state)
-    yield _only(rows, len(state))
+    yield replace(rows, times=outputs[:1], states=first, works=np.zeros(1), mode=mode.name)
     total -= rows.lost
     stood, before = 0, mode
     while t < outputs[-1]:
@@ -92,7 +93,7 @@ def pieces(scene: Scene, outputs: Array, state: Array, limits: Tolerances) -> It
             states = [scene.projected(mode, s, leg.dense(s)) for s in times]
             works = [total + work_of(flow, leg.start, s, leg.dense) for s in times]
             total += work_of(flow, leg.start, leg.end, leg.dense)
-            yield Rows(times, table(states, len(state)), np.array(works), 1)
+            yield Rows(times, table(states, len(state)), np.array(works), 1, mode=mode.name)
             t, state, done = leg.end, leg.state, until
         if t >= outputs[-1]:
             return

@@ -68,6 +68,7 @@ class Rows:
     tally: Mapping[int, tuple[int, int]] = field(default_factory=dict)
     events: tuple[Event, ...] = ()
     lost: float = 0.0  # energy that impacts took [J]
+    mode: str = ""  # of the contacts, where there are any
 
 
 class Stopped(Exception):

@@ -65,8 +65,8 @@ class Clock:
         return sum(leaf.leaves for _, _, leaf, _ in self.movers)
 
     @cached_property
-    def _constant_bits(self) -> int:
-        """Of the parameters: nothing else may be in a formula of positions."""
+    def constant_bits(self) -> int:
+        """The leaves that are parameters: beside movers nothing else may be in a position."""
         algebra = self.kinematics.algebra
         symbols = (p.symbol for p in self.kinematics.model.parameters)
         bits = 0
@@ -80,7 +80,7 @@ class Clock:
         Raises:
             NoTree: it depends on something else, such as a rate or an input.
         """
-        if value.leaves & ~self._moving_bits & ~self._constant_bits:
+        if value.leaves & ~self._moving_bits & ~self.constant_bits:
             raise NoTree("a position depends on more than coordinates, time and parameters")
         found, bits = [], value.leaves & self._moving_bits
         while bits:

@@ -6,12 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from eomgen.algebra.graph import Node
+from eomgen.algebra.ldl import Pivots
 from eomgen.mechanics.recursive import rigid
 from eomgen.mechanics.recursive.rigid import Rigid
 from eomgen.mechanics.recursive.steps import Step
 from eomgen.mechanics.vectors import Matrix, Vector, add, scale, transform
 
 GROUND = 0  # the number of the place that stands still
+Solution = tuple[tuple[Node, ...], Pivots]  # accelerations, and what they divide by
 
 
 class NoTree(Exception):
