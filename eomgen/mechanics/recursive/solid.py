@@ -5,14 +5,25 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from eomgen.algebra.arithmetic import FLOAT, evaluate
 from eomgen.algebra.graph import Node
 from eomgen.mechanics import rotation
 from eomgen.mechanics.recursive.draft import Draft
 from eomgen.mechanics.recursive.formulas import Moving
 from eomgen.mechanics.recursive.places import Hung
 from eomgen.mechanics.recursive.records import GROUND, NoTree, Place, Point, SpatialFrame
-from eomgen.mechanics.recursive.steps import Flat, FreeRotation, Rotation, Shift, Step, Turn
-from eomgen.mechanics.vectors import Matrix, Vector, add, scale, transform, transpose
+from eomgen.mechanics.recursive.steps import (
+    Flat,
+    FreeRotation,
+    Rotation,
+    Shift,
+    SkewTurn,
+    Step,
+    Turn,
+    turned,
+    turned_askew,
+)
+from eomgen.mechanics.vectors import Matrix, Vector, add, compose, scale, transform, transpose
 from eomgen.model import Quaternion
 from eomgen.model import Turn as Turned
 
@@ -30,6 +41,7 @@ class _Path:
     name: str
     base: int
     spin: Vector[Node]
+    turned: Matrix[Node] | None = None  # the axes here in those of the body
     steps: list[Step] = field(default_factory=list)
     columns: dict[int, Vector[Node]] = field(default_factory=dict)
 
@@ -39,7 +51,14 @@ class _Path:
             return self.base
         kind = SpatialFrame(self.spin)
         place = Place(self.name, kind, self.base, tuple(self.steps), self.columns)
-        return self.draft.put(place)
+        number = self.draft.put(place)
+        if self.turned is not None:
+            self.draft.turned[number] = self.turned
+        return number
+
+    def own(self, vector: Vector[Node]) -> Vector[Node]:
+        """A vector in the axes of the body, in the axes here."""
+        return vector if self.turned is None else transform(transpose(self.turned), vector)
 
     def cut(self, moves: bool) -> None:
         """End a place where another motion begins: what shares a coordinate is joined later."""
@@ -90,6 +109,8 @@ def _to_world(draft: Draft, base: int) -> Matrix[Node]:
         return rotation.identity(algebra, 3)
     known = draft.turned_as.get(base)
     axes = draft.kinematics.axes(known) if known else rotation.identity(algebra, 3)
+    if base in draft.turned:
+        axes = compose(axes, draft.turned[base])
     return tuple((*(draft.zero,) * 3, *row) for row in axes)
 
 
@@ -97,7 +118,7 @@ def _on_frame(draft: Draft, name: str, base: int, offset: Moving) -> int:
     """A place in the axes of its base."""
     if _is_nothing(draft, offset):
         return base
-    path = _Path(draft, name, base, draft.spin(base))
+    path = _Path(draft, name, base, draft.spin(base), draft.turned.get(base))
     _shift(path, offset)
     place = path.end()
     if base in draft.turned_as:
@@ -132,7 +153,7 @@ def _start(draft: Draft, name: str, hung: Hung, offset: Moving) -> _Path:
     """The way to the origin of a frame; where that moves in world axes it is a point first."""
     if hung.on is not None:
         base = frame(draft, hung.on)
-        path = _Path(draft, name, base, draft.spin(base))
+        path = _Path(draft, name, base, draft.spin(base), draft.turned.get(base))
         if not _is_nothing(draft, offset):
             _shift(path, offset)
         return path
@@ -148,33 +169,67 @@ def _start(draft: Draft, name: str, hung: Hung, offset: Moving) -> _Path:
 def _shift(path: _Path, offset: Moving) -> None:
     zero = path.draft.zero
     path.cut(bool(offset.columns))
-    step = Shift(path.spin, offset.values, offset.rate, offset.drift)
-    path.go(step, {c: (zero, zero, zero, *column) for c, column in offset.columns.items()})
+    step = Shift(path.spin, *map(path.own, (offset.values, offset.rate, offset.drift)))
+    columns = {c: path.own(column) for c, column in offset.columns.items()}
+    path.go(step, {c: (zero, zero, zero, *column) for c, column in columns.items()})
 
 
 def _turn(path: _Path, turn: Turned) -> None:
     draft = path.draft
     algebra, angle = draft.kinematics.algebra, draft.clock.moving([turn.angle])
-    axis = rotation.unit(algebra, turn.axis)
+    axis = path.own(rotation.unit(algebra, turn.axis))
     path.cut(bool(angle.columns))
-    (value,), (rate,), (drift,) = angle.values, angle.rate, angle.drift
-    step: Step
     number = _aligned(axis, algebra.number(1))
-    if number is None:
-        matrix = rotation.about(algebra, axis, value)
-        path.spin = transform(transpose(matrix), path.spin)
-        step = Rotation(matrix, scale(rate, axis), scale(drift, axis), path.spin)
-    else:
-        sign = axis[number]
-        value, rate, drift = sign * value, sign * rate, sign * drift
-        sine, cosine = algebra.apply("sin", value), algebra.apply("cos", value)
-        still = Turn(number, sine, cosine, rate, drift, path.spin)
-        path.spin = still.motion((*path.spin, *path.spin))[:3]
-        step = Turn(number, sine, cosine, rate, drift, path.spin)
+    upright = None
+    if number is None and not angle.is_still and not any(a.leaves for a in axis):
+        upright, axis = _upright(path, axis)
+        number = 2
+    step = _about(path, axis, number, upright, angle)
+    path.spin = add(step.spin, scale(angle.rate[0], axis))
     zero = draft.zero
     own = {c: (*scale(slope, axis), zero, zero, zero) for c, (slope,) in angle.columns.items()}
-    path.spin = add(path.spin, scale(angle.rate[0], axis))
     path.go(step, own)
+
+
+def _about(
+    path: _Path,
+    axis: Vector[Node],
+    number: int | None,
+    upright: Matrix[Node] | None,
+    angle: Moving,
+) -> Turn | SkewTurn | Rotation:
+    """The step of a turn about an axis."""
+    algebra = path.draft.kinematics.algebra
+    (value,), (rate,), (drift,) = angle.values, angle.rate, angle.drift
+    if number is None:
+        matrix = rotation.about(algebra, axis, value)
+        spin = transform(transpose(matrix), path.spin)
+        return Rotation(matrix, scale(rate, axis), scale(drift, axis), spin)
+    sign = axis[number]
+    waves = algebra.apply("sin", sign * value), algebra.apply("cos", sign * value)
+    motion = (*waves, sign * rate, sign * drift)
+    if upright is None:
+        return turned(number, motion, path.spin)
+    return turned_askew(upright, motion, path.spin)
+
+
+def _upright(path: _Path, axis: Vector[Node]) -> tuple[Matrix[Node], Vector[Node]]:
+    """Axes of which z is along a skew axis, or against it; the axis in these.
+
+    They are reached by the shortest turn: 1 + [n x] + [n x]^2 / (1 + e_z) with n = z x e.
+    """
+    zero, one = path.draft.zero, path.draft.kinematics.algebra.number(1)
+    (height,) = evaluate([axis[2]], {}, FLOAT)
+    sign = -1 if height < 0 else 1
+    x, y, z = (sign * a for a in axis)
+    share = 1 / (1 + z)
+    matrix = (
+        (1 - x * x * share, -(x * y * share), x),
+        (-(x * y * share), 1 - y * y * share, y),
+        (-x, -y, z),
+    )
+    path.turned = matrix if path.turned is None else compose(path.turned, matrix)
+    return matrix, (zero, zero, sign * one)
 
 
 def _turn_freely(path: _Path, quaternion: Quaternion) -> None:
@@ -182,6 +237,8 @@ def _turn_freely(path: _Path, quaternion: Quaternion) -> None:
     algebra, zero = path.draft.kinematics.algebra, path.draft.zero
     path.cut(True)
     matrix = rotation.quaternion(algebra, [algebra.of(s) for s in quaternion.symbols])
+    if path.turned is not None:
+        matrix, path.turned = compose(transpose(path.turned), matrix), None
     spin = tuple(algebra.of(s) for s in quaternion.speeds)
     before = transform(transpose(matrix), path.spin)
     units = rotation.identity(algebra, 3)
