@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from scenes import EXTRA, SHIPPED, model_of
-from trees import PLANAR, spatial
+from trees import BALL, PLANAR, spatial
 
 from eomgen import compile, study
 from eomgen.algebra import cost
@@ -21,7 +21,7 @@ from eomgen.mechanics.recursive.records import NoTree, PlanarFrame, Point
 from eomgen.spec import read
 
 SEEDS = range(8)
-RANDOM = {f"random_{seed}": spatial(seed) for seed in SEEDS} | {"planar": PLANAR}
+RANDOM = {f"random_{seed}": spatial(seed) for seed in SEEDS} | {"planar": PLANAR, "ball": BALL}
 
 
 @cache
