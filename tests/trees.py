@@ -46,7 +46,8 @@ def spatial(seed, count=6):
         "prescribed: {w: 0.3*sin(2*t)}", "inputs: {tau: 1, F: 1}",
         f"points: {{T: {{on: B{count // 2}, at: [0.2, -0.1, 0.3 + 0.1*q0]}}}}",
         "bodies:", *bodies, "  nut: {mass: 0.4, at: T}",
-        "  bob: {mass: 0.7, at: \"T + 0.4*[sin(swing), 0.2, -cos(swing)]\"}", "springs:", *springs, "moments:", *moments, "forces:", *forces,
+        '  bob: {mass: 0.7, at: "T + 0.4*[sin(swing), 0.2, -cos(swing)]"}', "springs:", *springs,
+        "moments:", *moments, "forces:", *forces,
         "dampers:", f"  - {{between: [B0, B{count - 1}], damping: 0.4}}",
     ]  # fmt: skip
     return "\n".join(lines) + "\n"

@@ -238,6 +238,21 @@ class Turn:
         return tuple(tuple(row) for row in rows)
 
 
+def blockwise(rotation: Matrix[Node], matrix: Matrix[Node]) -> Matrix[Node]:
+    """R m R' of each of the three blocks of an inertia (6, 6)."""
+    rows, back = [list(row) for row in matrix], transposed(rotation)
+    for down, across in ((0, 0), (0, 3), (3, 3)):
+        block = tuple(tuple(row[across : across + 3]) for row in matrix[down : down + 3])
+        if down == across:
+            turned = rigid.turned_tensor(block, rotation)
+        else:
+            turned = compose(compose(rotation, block), back)
+        for i in range(3):
+            for j in range(3):
+                rows[down + i][across + j] = rows[across + j][down + i] = turned[i][j]
+    return tuple(tuple(row) for row in rows)
+
+
 @dataclass(frozen=True)
 class Rotation:
     """Any turn: `matrix` has the axes after as its columns; `spin` as for `Turn`."""
@@ -264,18 +279,7 @@ class Rotation:
 
     def inertia(self, matrix: Matrix[Node]) -> Matrix[Node]:
         """Blockwise R m R'."""
-        rows = [list(row) for row in matrix]
-        back = transposed(self.matrix)
-        for down, across in ((0, 0), (0, 3), (3, 3)):
-            block = tuple(tuple(row[across : across + 3]) for row in matrix[down : down + 3])
-            if down == across:
-                turned = rigid.turned_tensor(block, self.matrix)
-            else:
-                turned = compose(compose(self.matrix, block), back)
-            for i in range(3):
-                for j in range(3):
-                    rows[down + i][across + j] = rows[across + j][down + i] = turned[i][j]
-        return tuple(tuple(row) for row in rows)
+        return blockwise(self.matrix, matrix)
 
     def rigid(self, body: Rigid) -> Rigid | None:
         """In the axes before."""
@@ -299,7 +303,7 @@ class FreeRotation(Rotation):
 
 @dataclass(frozen=True)
 class SkewTurn:
-    """A constant rotation and a turn about z: vectors go through both at once, inertias apart."""
+    """A constant rotation and a turn about z in one; inertias can be lumped between the two."""
 
     still: Rotation
     turn: Turn
@@ -325,12 +329,11 @@ class SkewTurn:
 
     def inertia(self, matrix: Matrix[Node]) -> Matrix[Node]:
         """Blockwise R m R'."""
-        return self.still.inertia(self.turn.inertia(matrix))
+        return blockwise(self.matrix, matrix)
 
     def rigid(self, body: Rigid) -> Rigid | None:
         """In the axes before."""
-        turned = self.turn.rigid(body)
-        return None if turned is None else self.still.rigid(turned)
+        return rigid.rotated(body, self.matrix)
 
     def bound(self, sizes: Vector[Node]) -> Vector[Node]:
         """The bounds are the same for all axes."""
