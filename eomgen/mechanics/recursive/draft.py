@@ -34,6 +34,7 @@ class Draft:
     points: dict[str, int] = field(default_factory=dict)
     frames: dict[str, int] = field(default_factory=dict)
     turned: dict[int, Matrix[Node]] = field(default_factory=dict)  # own axes in those of the body
+    ahead: dict[str, Vector[Node]] = field(default_factory=dict)  # axes of bodies to come
     turned_as: dict[int, str] = field(default_factory=dict)  # place -> the body whose axes it has
 
     @property

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from eomgen.algebra.arithmetic import FLOAT, evaluate
+from eomgen.algebra.elementary import BUILD
 from eomgen.algebra.graph import Node
 from eomgen.mechanics import rotation
 from eomgen.mechanics.recursive.draft import Draft
@@ -15,14 +15,17 @@ from eomgen.mechanics.recursive.records import GROUND, NoTree, Place, Point, Spa
 from eomgen.mechanics.recursive.steps import (
     Flat,
     FreeRotation,
+    Motion,
     Rotation,
     Shift,
     SkewTurn,
     Step,
     Turn,
+    advanced,
     turned,
     turned_askew,
 )
+from eomgen.mechanics.recursive.upright import Upright, towards, upright
 from eomgen.mechanics.vectors import Matrix, Vector, add, compose, scale, transform, transpose
 from eomgen.model import Quaternion
 from eomgen.model import Turn as Turned
@@ -176,60 +179,80 @@ def _shift(path: _Path, offset: Moving) -> None:
 
 def _turn(path: _Path, turn: Turned) -> None:
     draft = path.draft
-    algebra, angle = draft.kinematics.algebra, draft.clock.moving([turn.angle])
-    axis = path.own(rotation.unit(algebra, turn.axis))
+    angle = draft.clock.moving([turn.angle])
+    axis = _axis(path, turn)
     path.cut(bool(angle.columns))
-    number = _aligned(axis, algebra.number(1))
-    upright = None
-    if number is None and not angle.is_still and not any(a.leaves for a in axis):
-        upright, axis = _upright(path, axis)
-        number = 2
-    step = _about(path, axis, number, upright, angle)
+    number = _aligned(axis, axis[0].graph.one)
+    step: Turn | SkewTurn | Rotation
+    if number is not None:
+        step = turned(number, _motion(angle, axis[number]), path.spin)
+    elif angle.is_still or any(a.leaves for a in axis):
+        step = _rotation(path, axis, angle)
+    else:
+        found = _upright(path, axis, turn)
+        axis = (draft.zero, draft.zero, axis[0].graph.one * found.sign)
+        motion = advanced(_motion(angle, axis[2]), found.sine, found.cosine)
+        if found.tilt is None:
+            step = turned_askew(found.matrix, motion, path.spin)
+        else:
+            tilted = turned(0, (*found.tilt, draft.zero, draft.zero), path.spin)
+            path.go(tilted, {})
+            step = turned(2, motion, tilted.spin)
     path.spin = add(step.spin, scale(angle.rate[0], axis))
-    zero = draft.zero
-    own = {c: (*scale(slope, axis), zero, zero, zero) for c, (slope,) in angle.columns.items()}
+    still = (draft.zero,) * 3
+    own = {c: (*scale(slope, axis), *still) for c, (slope,) in angle.columns.items()}
     path.go(step, own)
 
 
-def _about(
-    path: _Path,
-    axis: Vector[Node],
-    number: int | None,
-    upright: Matrix[Node] | None,
-    angle: Moving,
-) -> Turn | SkewTurn | Rotation:
-    """The step of a turn about an axis."""
-    algebra = path.draft.kinematics.algebra
+def _axis(path: _Path, turn: Turned) -> Vector[Node]:
+    """The axis of a turn in the axes before it."""
+    draft = path.draft
+    if turn is draft.words.bodies[path.name].frame.turns[0] and path.name in draft.ahead:
+        return draft.ahead[path.name]
+    return path.own(rotation.unit(draft.kinematics.algebra, turn.axis))
+
+
+def _motion(angle: Moving, sign: Node) -> Motion:
+    """Sine, cosine, rate and drift of an angle, counted the other way round where sign is -1."""
     (value,), (rate,), (drift,) = angle.values, angle.rate, angle.drift
-    if number is None:
-        matrix = rotation.about(algebra, axis, value)
-        spin = transform(transpose(matrix), path.spin)
-        return Rotation(matrix, scale(rate, axis), scale(drift, axis), spin)
-    sign = axis[number]
-    waves = algebra.apply("sin", sign * value), algebra.apply("cos", sign * value)
-    motion = (*waves, sign * rate, sign * drift)
-    if upright is None:
-        return turned(number, motion, path.spin)
-    return turned_askew(upright, motion, path.spin)
+    value = sign * value
+    return BUILD["sin"](value), BUILD["cos"](value), sign * rate, sign * drift
 
 
-def _upright(path: _Path, axis: Vector[Node]) -> tuple[Matrix[Node], Vector[Node]]:
-    """Axes of which z is along a skew axis, or against it; the axis in these.
+def _rotation(path: _Path, axis: Vector[Node], angle: Moving) -> Rotation:
+    """A turn that stands still, or about an axis that parameters decide."""
+    (value,), (rate,), (drift,) = angle.values, angle.rate, angle.drift
+    matrix = rotation.about(path.draft.kinematics.algebra, axis, value)
+    spin = transform(transpose(matrix), path.spin)
+    return Rotation(matrix, scale(rate, axis), scale(drift, axis), spin)
 
-    They are reached by the shortest turn: 1 + [n x] + [n x]^2 / (1 + e_z) with n = z x e.
-    """
-    zero, one = path.draft.zero, path.draft.kinematics.algebra.number(1)
-    (height,) = evaluate([axis[2]], {}, FLOAT)
-    sign = -1 if height < 0 else 1
-    x, y, z = (sign * a for a in axis)
-    share = 1 / (1 + z)
-    matrix = (
-        (1 - x * x * share, -(x * y * share), x),
-        (-(x * y * share), 1 - y * y * share, y),
-        (-x, -y, z),
+
+def _upright(path: _Path, axis: Vector[Node], turn: Turned) -> Upright:
+    """The axes behind a joint about a skew axis; the body has them from now on."""
+    draft, found = path.draft, upright(axis)
+    before = path.turned
+    path.turned = found.axes if before is None else compose(before, found.axes)
+    following = _following(path, turn)
+    ahead = following and towards(
+        found, path.own(rotation.unit(draft.kinematics.algebra, following[1].axis))
     )
-    path.turned = matrix if path.turned is None else compose(path.turned, matrix)
-    return matrix, (zero, zero, sign * one)
+    if following and ahead:
+        found, draft.ahead[following[0]] = ahead
+        path.turned = found.axes if before is None else compose(before, found.axes)
+    return found
+
+
+def _following(path: _Path, turn: Turned) -> tuple[str, Turned] | None:
+    """The only body that hangs on this one, and its first turn; limbs that are alike stay so."""
+    bodies = path.draft.words.bodies
+    hanging = [(n, b.frame.turns) for n, b in bodies.items() if b.frame.origin.on == path.name]
+    if turn is not bodies[path.name].frame.turns[-1] or len(hanging) != 1:
+        return None
+    ((name, turns),) = hanging
+    first = next(iter(turns), None)
+    if not isinstance(first, Turned) or not all(c.is_number for c in first.axis):
+        return None
+    return name, first
 
 
 def _turn_freely(path: _Path, quaternion: Quaternion) -> None:

@@ -349,6 +349,12 @@ def turned(axis: int, motion: Motion, spin: Vector[Node]) -> Turn:
     return replace(step, spin=step.motion((*spin, *spin))[:3])
 
 
+def advanced(motion: Motion, sine: Node, cosine: Node) -> Motion:
+    """The motion with a constant angle added."""
+    s, c, rate, drift = motion
+    return s * cosine + c * sine, c * cosine - s * sine, rate, drift
+
+
 def turned_askew(upright: Matrix[Node], motion: Motion, spin: Vector[Node]) -> SkewTurn:
     """A turn about the third column of a constant rotation, `spin` in the axes before."""
     sine, cosine, *_ = motion
