@@ -323,8 +323,10 @@ def wanted(model: Model) -> tuple[str, ...]:
     return tuple(f for f in FUNCTIONS if f not in unneeded)
 
 
-def program(m: Machine) -> Program:
+def program(m: Machine, names: Sequence[str] = ()) -> Program:
     """The program of a scene.
+
+    names: the only functions of `wanted` that it is to have; (): all of them.
 
     Raises:
         SingularMassMatrix: some motion has no inertia whatever the state.
@@ -342,7 +344,7 @@ def program(m: Machine) -> Program:
             _variable(p.name, p.description, p.value) for p in machine.free_parameters(model)
         ),
         outputs=tuple(_variable(o.name, o.description) for o in model.outputs),
-        functions=tuple(FUNCTIONS[name](m) for name in wanted(model)),
+        functions=tuple(FUNCTIONS[f](m) for f in wanted(model) if not names or f in names),
         engine="" if m.engine is None else m.engine.said,
     )
 

@@ -126,7 +126,13 @@ def _free(model: Model, wanted: Wanted) -> Study:
     machine = compile.machine_of(model)
     derivation = _closed(machine, wanted)
     report = recursed(machine) if derivation is None else checked(derivation, machine)
-    return Study(model, derivation, machine, compile.program(machine), report)
+    return Study(model, derivation, machine, _program(machine, wanted), report)
+
+
+def _program(machine: compile.Machine, wanted: Wanted) -> Program:
+    """The program with the functions that are wanted; all where one is made of others."""
+    is_plain = {*wanted.functions} <= {*compile.wanted(machine.model)}
+    return compile.program(machine, wanted.functions if is_plain else ())
 
 
 def _by(study: Study, method: str | None) -> Study:

@@ -20,12 +20,14 @@ class Wanted:
 
     notes: people will read the closed form; else a scene too large for one needs none.
     method: one of `METHODS`, which is shown and compared with the others; None: as ever.
+    functions: the only functions that will be read of the program; (): all.
     """
 
     formulation: str = "auto"
     baumgarte: Fraction = Fraction(0)
     notes: bool = False
     method: str | None = None
+    functions: tuple[str, ...] = ()
 
 
 AUTO = Wanted()

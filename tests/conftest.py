@@ -14,8 +14,8 @@ from commandline import eomgen, together
 from reference import stem, wanted
 from scenes import SHIPPED
 
+from eomgen.cache_folder import VARIABLE
 from eomgen.cli import main
-from eomgen.numerics.cache import VARIABLE
 
 HEAVY = frozenset((Path(__file__).parent / "heavy.txt").read_text(encoding="utf-8").split("\n"))
 TARGETS = ("-t", "latex", "-t", "c", "-t", "python", "-t", "text")

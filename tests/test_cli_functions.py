@@ -6,6 +6,9 @@ import pytest
 from scenes import SHIPPED, model_of
 
 from eomgen.functions import table
+from eomgen.outputs import Wish, rendered
+from eomgen.study import of_text
+from eomgen.wanted import Wanted
 
 ARM, LINKS, BAR = (SHIPPED[n] for n in ("skew_arm", "two_link_arm", "four_bar"))
 MOVING = {"accelerations": {"q_1": 0.5, "q_2": "-1"}, "inputs": {"tau_1": 0, "tau_2": 0}}
@@ -22,6 +25,18 @@ def test_generate_writes_what_is_asked_for_and_nothing_else(call, tmp_path):
         assert f"def {name}(" in module
     assert "skew_arm_mass_matrix(" not in header
     assert "def mass_matrix(" not in module
+
+
+@pytest.mark.parametrize("name", ["skew_arm", "satellite", "quarter_car"])
+def test_only_what_is_asked_for_is_assembled_and_it_is_the_same(name):
+    text = SHIPPED[name].read_text()
+    asked = ("accelerations", "energy")
+    whole, alone = of_text(text, name), of_text(text, name, Wanted(functions=asked))
+    assert [f.name for f in alone.program.functions] == list(asked)
+    made = rendered(whole, Wish(("c",), functions=asked))
+    assert rendered(alone, Wish(("c",), functions=asked)) == made
+    beside = of_text(text, name, Wanted(functions=("energy", "inverse_dynamics")))
+    assert beside.program == whole.program
 
 
 def test_generate_lists_what_can_be_asked_for_without_a_spec(call):

@@ -11,6 +11,7 @@ RECORDS = {"errors", "dimension", "model", "program", "__init__"}
 ALLOWED: dict[str, set[str]] = {
     "__init__": set(),
     "errors": set(),
+    "cache_folder": set(),
     "dimension": set(),
     "model": {"dimension"},
     "program": set(),
@@ -72,14 +73,18 @@ ALLOWED: dict[str, set[str]] = {
     "simulate_run": RECORDS
     | {"compile_places", "numerics", "render", "simulate", "simulate_method", "simulate_report"}
     | {"simulate_setup", "simulate_table", "study"},
+    "stability": RECORDS
+    | {"analysis", "chart", "checks", "compile_steps", "integrators", "mechanics", "numerics"}
+    | {"render", "simulate_method", "simulate_setup", "states", "stepping", "study"},
+    "cli_stability": {"cli_common", "errors", "files", "stability", "wanted"},
     "cli_simulate": {"cli_common", "errors", "files", "simulate_run", "wanted"},
     "chart": RECORDS
     | {"compile_steps", "formulation", "integrators", "numerics", "render", "simulate"}
     | {"simulate_method", "simulate_setup", "stepping", "study", "wanted"},
     "charting": RECORDS | {"chart", "files", "simulate_setup", "spec", "study"},
     "cli_chart": {"charting", "cli_common", "errors", "files"},
-    "render": RECORDS | {"algebra", "latex_name", "mechanics", "integrators"},
-    "numerics": RECORDS | {"render", "interpreter", "integrators"},
+    "render": RECORDS | {"cache_folder", "algebra", "latex_name", "mechanics", "integrators"},
+    "numerics": RECORDS | {"cache_folder", "render", "interpreter", "integrators"},
     "states": RECORDS | {"mechanics"},
     "evaluate": RECORDS | {"mechanics", "compile", "interpreter", "render", "numerics", "states"},
     "files": {"errors"},
@@ -88,17 +93,24 @@ ALLOWED: dict[str, set[str]] = {
     "output_links": {"analysis", "compile", "formulation", "mechanics", "render"},
     "outputs": RECORDS
     | {"checks", "functions", "integrators", "output_links", "analysis", "mechanics", "render"}
+    | {"stability"}
     | {"spec", "stepping", "study"},
     "cli_common": {"errors", "files", "functions", "outputs", "render", "spec", "study", "wanted"},
+    "precision": RECORDS
+    | {"algebra", "analysis", "checks", "evaluate", "formulation", "interpreter", "mechanics"}
+    | {"numerics", "render", "study"},
+    "cli_precision": {"precision", "spec", "study"},
     "cli_regressor": {"cli_common", "files", "functions", "study", "wanted"},
     "urdf": {"__init__", "errors", "spec"},
     "cli_import": {"cli_common", "errors", "files", "shelf", "spec", "urdf"},
     "cli": {
         "__init__",
         "cli_import",
+        "cli_precision",
         "cli_chart",
         "cli_common",
         "cli_simulate",
+        "cli_stability",
         "cli_regressor",
         "errors",
         "files",

@@ -14,7 +14,7 @@ from eomgen.interpreter import FLOAT, call
 from eomgen.numerics.compiled import build
 from eomgen.program import IN_MOTION, Assign, Value, operands
 from eomgen.render.code_context import Code, Style, coded
-from eomgen.render.lowered import atoms, lower
+from eomgen.render.lowered import content, lowered
 from eomgen.render.parts import divided
 from eomgen.render.routines import ROWS
 from eomgen.render.targets import TARGETS, render
@@ -106,8 +106,8 @@ def test_parts_of_programs_written_by_hand(name):
 @pytest.mark.parametrize("limit", [2, 10, 50])
 def test_slots_carry_what_later_parts_read(limit):
     """Each part reads only what it computes, or what a slot still holds."""
-    function = lower(program_of("skew_arm").function("state_derivative"))
-    cut = divided(function, limit)
+    found = lowered(program_of("skew_arm").function("state_derivative"))
+    function, cut = found.function, divided(found, limit)
     assert sum((p.statements for p in cut.parts), ()) == function.statements
     assert max(len(p.statements) for p in cut.parts) <= limit
     held, results = {}, {}
@@ -115,11 +115,10 @@ def test_slots_carry_what_later_parts_read(limit):
         known = {v for v, slot in part.loads if held[slot] == v}
         assert len(known) == len(part.loads)
         for statement in part.statements:
-            read = {a for e in operands(statement) for a in atoms(e) if isinstance(a, Value)}
-            assert read <= known
+            assert {Value(name) for name in content(operands(statement)).values} <= known
             known |= {Value(statement.name)} if isinstance(statement, Assign) else set()
         for expression, slot in part.stores:
-            assert {a for a in atoms(expression) if isinstance(a, Value)} <= known
+            assert {Value(name) for name in content((expression,)).values} <= known
             (results if slot < len(function.results) else held)[slot] = expression
     assert tuple(results[i] for i in range(len(results))) == function.results
     live = {slot for slot in held}
@@ -128,8 +127,8 @@ def test_slots_carry_what_later_parts_read(limit):
 
 
 def test_a_short_function_is_in_one_piece():
-    function = lower(program_of("simple_pendulum").function("energy"))
-    assert divided(function, len(function.statements)) is None
+    found = lowered(program_of("simple_pendulum").function("energy"))
+    assert divided(found, len(found.function.statements)) is None
 
 
 def test_a_singular_pivot_in_any_part_writes_nothing():

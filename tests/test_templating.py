@@ -1,9 +1,14 @@
+import shutil
+
 import jinja2
 import pytest
 import sympy as sp
 from programs import PROGRAMS
 
+from eomgen.cache_folder import VARIABLE, root
 from eomgen.errors import UsageError
+from eomgen.render.lines import named, rows, short_statements, statements, wrap
+from eomgen.render.routines import Argument, Step
 from eomgen.render.targets import TARGETS, render
 from eomgen.render.templating import (
     c_comment,
@@ -12,7 +17,6 @@ from eomgen.render.templating import (
     environment,
     fill,
     shipped,
-    wrap,
 )
 
 PROGRAM = PROGRAMS["slider_pendulum"]
@@ -105,3 +109,65 @@ def test_comments_and_strings_cannot_be_left():
 
 def test_long_lines_break_at_spaces():
     assert wrap("a + b + c", indent=2, hanging=2, width=7) == "  a + b\n    + c"
+
+
+HEADER = "c/model.h.j2"
+
+
+def header(templates):
+    return fill(templates, HEADER, {})
+
+
+def test_compiled_templates_stay_in_the_cache_until_their_text_changes(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "cache"))
+    assert header(overriding(tmp_path / "mine", HEADER, "first")) == "first"
+    (kept,) = root().rglob("*.cache")
+    written = kept.read_bytes()
+    compiled = jinja2.Environment.compile
+    monkeypatch.setattr(jinja2.Environment, "compile", None)
+    assert header(environment(tmp_path / "mine")) == "first"
+    monkeypatch.setattr(jinja2.Environment, "compile", compiled)
+    assert header(overriding(tmp_path / "mine", HEADER, "second")) == "second"
+    assert kept.read_bytes() != written
+    kept.write_bytes(written[:-5])
+    assert header(environment(tmp_path / "mine")) == "second"
+
+
+def test_templates_need_no_cache(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "cache"))
+    templates = overriding(tmp_path / "mine", HEADER, "first")
+    shutil.rmtree(root())
+    assert header(templates) == "first"
+    (tmp_path / "file").write_text("in the way")
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "file"))
+    assert header(environment(tmp_path / "mine")) == "first"
+
+
+PATTERNS = {"assign": ["%(name)s = %(expression)s;"], "sine": ["%(name)s;", "f(&%(name)s);"]}
+LONG = " + ".join(["abcdefgh"] * 12)
+
+
+def otherwise(step):
+    return f"<{step.kind}>\n"
+
+
+def test_a_record_is_laid_out_by_the_lines_of_its_kind():
+    steps = (Step("assign", "a", "b"), Step("solve"), Step("sine", "s"), Step("assign", "x", LONG))
+    text = statements(steps, PATTERNS, otherwise, 2)
+    assert text.splitlines()[:4] == ["  a = b;", "<solve>", "  s;", "  f(&s);"]
+    assert text == "  a = b;\n<solve>\n  s;\n  f(&s);\n" + wrap(f"x = {LONG};", 2) + "\n"
+    assert max(map(len, text.splitlines())) <= 100
+
+
+def test_a_line_that_is_too_long_is_left_to_a_macro():
+    steps = (Step("assign", "a", "b"), Step("assign", "x", "abc"), Step("solve"))
+    patterns = {"assign": "%(name)s = %(expression)s"}
+    assert short_statements(steps, patterns, otherwise, 2, 7) == "  a = b\n<assign>\n<solve>\n"
+
+
+def test_rows_and_records_have_a_line_each():
+    assert rows([(0, "a"), (1, "b + c")], "r[%s] = %s;", 1) == " r[0] = a;\n r[1] = b + c;\n"
+    assert rows(["a"], "%s,", 0) == "a,\n"
+    items = (Argument("x", "state", 3, "x"), Argument("m", "parameters", 0, "m", "m_"))
+    patterns = {"state": "%(code)s = s[%(index)s]", "parameters": "%(code)s = p.%(member)s"}
+    assert named(items, patterns, "source", 2) == "  x = s[3]\n  m = p.m_\n"

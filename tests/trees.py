@@ -118,3 +118,22 @@ moments:
 forces:
   - {on: end, from: cart, force: [1, 0.2]}
 """
+
+
+PARALLEL = ("[1, 2, 2]", "[1, 2, 2]", "[-1, -2, -2]", "[1, 1, 3]", "[1, 1, 3]", "[3, 0, -1]")
+
+
+def arm(count, axes=("[1, 2, 2]", "y", "[2, -1, 2]", "z")):
+    """A chain in space: skew axes, full inertias."""
+    lines = [
+        "eom: 1", f"system: Chain of {count}", "space: solid", "gravity: [0, 0, -9.81]",
+        "coordinates:", *(f"  q{i}: 1" for i in range(count)),
+        "bodies:",
+    ]  # fmt: skip
+    for i in range(count):
+        on = f"on: B{i - 1}, at: [0.1, 0.02, 0.3], " if i else ""
+        lines.append(
+            f"  B{i}: {{mass: {1 + i / 100}, inertia: [0.05, 0.06, 0.04, 0.01, -0.005, 0.008], "
+            f"com: [0.02, -0.03, 0.15], frame: {{{on}turn: [[{axes[i % len(axes)]}, q{i}]]}}}}"
+        )
+    return "\n".join(lines) + "\n"

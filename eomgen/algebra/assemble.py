@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from math import prod
 
 from eomgen.algebra.graph import Node, below, term
@@ -56,8 +57,8 @@ def assemble(
     """
     if prod(shape) != len(results):
         raise ValueError(f"{name} has {len(results)} results, its shape is {shape}")
-    reached = set(below(results))
-    checks = tuple(pair for pair in pivots if not reached.isdisjoint(_divisors(pair[0])))
+    known = {*below(results)} if pivots else set()
+    checks = tuple(pair for pair in pivots if not known.isdisjoint(_divisors(pair[0])))
     return written(Function(name, about, shape, (), ()), results, checks, {})
 
 
@@ -87,7 +88,7 @@ def written(
     """
     checks = dict(pivots)
     wanted = [*results, *checks.values()]
-    nodes = below([*wanted, *checks], given.__contains__)
+    nodes = below([*wanted, *checks], given.__contains__ if given else None)
     partners = _partners(nodes)
     known = {a for a, e in given.items() if a not in checks or isinstance(e, Value)}
     named = {*partners, *checks, *_used_twice(nodes, wanted)} - known
@@ -96,7 +97,7 @@ def written(
     for node in nodes:
         if node in checks:
             _place_all(draft, below([checks[node]], stop=draft.knows))
-        _place_all(draft, [node])
+        _place_all(draft, (node,))
         if node in checks:
             _require_positive(draft, node, checks[node])
     outputs = tuple(draft.expressions[node] for node in results)
@@ -105,7 +106,7 @@ def written(
 
 def _used_twice(nodes: Iterable[Node], wanted: Iterable[Node]) -> list[Node]:
     """The computed nodes that are read more than once; a pivot's own check does not count."""
-    uses = Counter(a for node in nodes for a in node.operands)
+    uses = Counter(chain.from_iterable([node.operands for node in nodes]))
     uses.update(wanted)
     return [a for a in uses if a.operands and uses[a] > 1]
 
@@ -129,32 +130,46 @@ def _place_all(draft: _Draft, nodes: Iterable[Node]) -> None:
 
 def _place(draft: _Draft, node: Node) -> None:
     """The expression of a node whose operands are placed; a statement where it gets a name."""
-    if node.operator == "system":
+    if node in draft.given:
+        draft.expressions[node], draft.sizes[node] = draft.given[node], 0
+    elif node.operator in READS:
+        draft.expressions[node], draft.sizes[node] = READS[node.operator](draft, node), 0
+    elif node.operator == "system":
         _solve(draft, node)
         return
-    draft.expressions[node], draft.sizes[node] = _expression(draft, node)
+    else:
+        _apply(draft, node)
     if node in draft.shared:
         _assign(draft, node)
 
 
-def _expression(draft: _Draft, node: Node) -> tuple[Expression, int]:
-    """The node in terms of its operands, and how many operators stand on the line."""
-    if node in draft.given:
-        return draft.given[node], 0
-    match node.operator:
-        case "number":
-            return Number(node.datum), 0
-        case "read":
-            return node.datum, 0
-        case "symbol":
-            raise ValueError(f"a program cannot read the free symbol {node.datum}")
-        case "solved":
-            system = draft.expressions[node.operands[0]]
-            assert isinstance(system, Apply)
-            return system.operands[node.datum], 0
-    while (size := 1 + sum(draft.sizes[a] for a in node.operands)) > LARGEST_EXPRESSION:
-        _assign(draft, max(node.operands, key=draft.sizes.__getitem__))
-    return Apply(node.operator, tuple(draft.expressions[a] for a in node.operands)), size
+def _symbol(draft: _Draft, node: Node) -> Expression:
+    raise ValueError(f"a program cannot read the free symbol {node.datum}")
+
+
+def _solved(draft: _Draft, node: Node) -> Expression:
+    system = draft.expressions[node.operands[0]]
+    assert isinstance(system, Apply)
+    row: int = node.datum
+    return system.operands[row]
+
+
+# what is read rather than computed
+READS: dict[str, Callable[[_Draft, Node], Expression]] = {
+    "number": lambda draft, node: Number(node.datum),
+    "read": lambda draft, node: node.datum,
+    "symbol": _symbol,
+    "solved": _solved,
+}
+
+
+def _apply(draft: _Draft, node: Node) -> None:
+    """An operator on its operands; the largest of these get names where the line is too long."""
+    expressions, sizes, operands = draft.expressions, draft.sizes, node.operands
+    while (size := 1 + sum([sizes[a] for a in operands])) > LARGEST_EXPRESSION:
+        _assign(draft, max(operands, key=sizes.__getitem__))
+    expressions[node] = Apply(node.operator, tuple([expressions[a] for a in operands]))
+    sizes[node] = size
 
 
 def _assign(draft: _Draft, node: Node) -> None:

@@ -43,25 +43,39 @@ def of(results: Collection[Node], prepared: int = 0) -> Cost:
 
     prepared: bit set of leaves; what depends on these only is known before and costs nothing.
     """
-    return Cost(operations(results, prepared), longest_chain(results, prepared))
+    nodes = below(results)
+    return Cost(_operations(nodes, prepared), _longest_chain(nodes, prepared))
 
 
 def operations(results: Iterable[Node], prepared: int = 0) -> int:
     """The weighted operations that results take."""
-    return sum(
-        WEIGHTS[node.operator] if node.operator in WEIGHTS else _system(node)
-        for node in below(results)
-        if node.leaves & ~prepared
-    )
+    return _operations(below(results), prepared)
+
+
+def _operations(nodes: Iterable[Node], prepared: int) -> int:
+    moving, total = ~prepared, 0
+    for node in nodes:
+        if node.leaves & moving:
+            weight = WEIGHTS.get(node.operator)
+            total += _system(node) if weight is None else weight
+    return total
 
 
 def longest_chain(results: Iterable[Node], prepared: int = 0) -> int:
     """The cycles that pass from the arguments, sines and cosines known, to the last result."""
+    return _longest_chain(below(results), prepared)
+
+
+def _longest_chain(nodes: Iterable[Node], prepared: int) -> int:
+    moving = ~prepared
     ready: dict[Node, int] = {}
-    for node in below(results):
-        start = max((ready[a] for a in node.operands), default=0)
-        takes = CYCLES[node.operator] if node.operator in CYCLES else _chain_of_system(node)
-        ready[node] = start + takes if node.leaves & ~prepared else 0
+    for node in nodes:
+        if node.leaves & moving:
+            takes = CYCLES.get(node.operator)
+            start = max([ready[a] for a in node.operands], default=0)
+            ready[node] = start + (_chain_of_system(node) if takes is None else takes)
+        else:
+            ready[node] = 0
     return max(ready.values(), default=0)
 
 

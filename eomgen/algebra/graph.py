@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from fractions import Fraction
 from math import isqrt
+from operator import attrgetter
 from typing import Any
 
 from eomgen.program import Read
@@ -31,6 +32,13 @@ class Node:
     operands: tuple[Node, ...]
     datum: Any  # number: Fraction; read: program.Read; symbol: its name; solved: its row
     leaves: int  # bit set of the leaves that the value depends on
+
+    def __init__(
+        self, graph: Graph, operator: str, operands: tuple[Node, ...], leaves: int, datum: Any
+    ) -> None:
+        self.graph, self.operator, self.operands = graph, operator, operands
+        self.leaves, self.datum, self.id = leaves, datum, len(graph.nodes)
+        graph.nodes.append(self)
 
     def __add__(self, other: Node | Exact) -> Node:
         return add(self, other if isinstance(other, Node) else self.graph.number(other))
@@ -106,17 +114,13 @@ class Graph:
         return self.make("pi", ())
 
     def _new(self, key: tuple[Any, ...], operands: tuple[Node, ...], datum: Any) -> Node:
-        node = Node.__new__(Node)
-        node.graph, node.operator, node.operands, node.datum = self, key[0], operands, datum
-        node.id = len(self.nodes)
-        node.leaves = 0
+        leaves = 0
         for operand in operands:
-            node.leaves |= operand.leaves
-        if node.operator == "read" or node.operator == "symbol":
-            node.leaves = 1 << self._leaf_count
+            leaves |= operand.leaves
+        if key[0] == "read" or key[0] == "symbol":
+            leaves = 1 << self._leaf_count
             self._leaf_count += 1
-        self.nodes.append(node)
-        self._table[key] = node
+        node = self._table[key] = Node(self, key[0], operands, leaves, datum)
         return node
 
 
@@ -124,7 +128,10 @@ def binary(operator: str, a: Node, b: Node) -> Node:
     """The node of a binary operator: one look-up."""
     graph = a.graph
     key = (operator, a.id, b.id)
-    return graph._table.get(key) or graph._new(key, (a, b), None)
+    node = graph._table.get(key)
+    if node is None:
+        node = graph._table[key] = Node(graph, operator, (a, b), a.leaves | b.leaves, None)
+    return node
 
 
 def unary(operator: str, a: Node) -> Node:
@@ -136,9 +143,9 @@ def unary(operator: str, a: Node) -> Node:
 def add(a: Node, b: Node) -> Node:
     """The sum a + b."""
     if b.operator == "number":
-        return _shift(a, b.datum)
+        return a if b is a.graph.zero else _shift(a, b.datum)
     if a.operator == "number":
-        return _shift(b, a.datum)
+        return b if a is a.graph.zero else _shift(b, a.datum)
     if b.operator == "negate":
         return subtract(a, b.operands[0])
     if a.operator == "negate":
@@ -150,10 +157,11 @@ def add(a: Node, b: Node) -> Node:
 
 def _total(a: Node, b: Node) -> Node | None:
     """A sum that is simpler than its operands; None elsewhere."""
-    for one, other in ((a, b), (b, a)):
-        # a + (b - a) = b
-        if one.operator == "subtract" and one.operands[1] is other:
-            return one.operands[0]
+    # a + (b - a) = b
+    if a.operator == "subtract" and a.operands[1] is b:
+        return a.operands[0]
+    if b.operator == "subtract" and b.operands[1] is a:
+        return b.operands[0]
     if a is not b and a.operator != "multiply" and b.operator != "multiply":
         return None
     (c, x), (d, y) = term(a), term(b)
@@ -193,13 +201,13 @@ def _without(product: Node, factor: Node) -> Node:
 def subtract(a: Node, b: Node) -> Node:
     """The difference a - b."""
     if b.operator == "number":
-        return _shift(a, -b.datum)
+        return a if b is a.graph.zero else _shift(a, -b.datum)
     if b.operator == "negate":
         return add(a, b.operands[0])
     if a is b:
         return a.graph.zero
     if a.operator == "number":
-        return _shift(negate(b), a.datum)
+        return negate(b) if a is a.graph.zero else _shift(negate(b), a.datum)
     if a.operator == "negate":
         return negate(add(a.operands[0], b))
     if (rest := _difference(a, b)) is not None:
@@ -251,6 +259,8 @@ def _shift(a: Node, c: Fraction) -> Node:
 
 def negate(a: Node) -> Node:
     """-a."""
+    if a is a.graph.zero:
+        return a
     if a.operator == "number":
         return a.graph.number(-a.datum)
     if a.operator == "negate":
@@ -263,9 +273,9 @@ def negate(a: Node) -> Node:
 def multiply(a: Node, b: Node) -> Node:
     """A product; the sign goes outside, numeric coefficients meet."""
     if a.operator == "number":
-        return _scale(a.datum, b)
+        return a if a is a.graph.zero else _scale(a.datum, b)
     if b.operator == "number":
-        return _scale(b.datum, a)
+        return b if b is a.graph.zero else _scale(b.datum, a)
     if a.operator == "negate":
         return negate(multiply(a.operands[0], b))
     if b.operator == "negate":
@@ -359,7 +369,7 @@ def _integer_power(a: Node, exponent: int) -> Node:
     return result
 
 
-def _root(value: Fraction) -> Fraction | None:
+def exact_root(value: Fraction) -> Fraction | None:
     """The square root of a number, where it is rational."""
     if value < 0:
         return None
@@ -369,21 +379,21 @@ def _root(value: Fraction) -> Fraction | None:
 
 def sqrt(a: Node) -> Node:
     """The square root."""
-    root = _root(a.datum) if a.operator == "number" else None
+    root = exact_root(a.datum) if a.operator == "number" else None
     return unary("sqrt", a) if root is None else a.graph.number(root)
 
 
-def below(nodes: Iterable[Node], stop: Callable[[Node], bool] = lambda node: False) -> list[Node]:
+def below(nodes: Iterable[Node], stop: Callable[[Node], bool] | None = None) -> list[Node]:
     """All nodes that `nodes` are computed from, themselves included, in order of evaluation.
 
     Operands of a node that satisfies `stop` are not entered.
     """
-    stack = list(nodes)
-    found: dict[int, Node] = {}
+    found = {*nodes}
+    stack = [*found]
     while stack:
         node = stack.pop()
-        if node.id not in found:
-            found[node.id] = node
-            if not stop(node):
-                stack.extend(node.operands)
-    return [found[i] for i in sorted(found)]
+        if stop is None or not stop(node):
+            new = [operand for operand in node.operands if operand not in found]
+            found.update(new)
+            stack += new
+    return sorted(found, key=attrgetter("id"))

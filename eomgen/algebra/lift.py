@@ -59,16 +59,18 @@ def lift(function: Function, target: Target) -> Lifted:
 def _shared_denominators(function: Function) -> frozenset[Expression]:
     """The values and arguments that divide more than once."""
     statements = [e for s in function.statements for e in operands(s)]
-    found = Counter(d for e in (*statements, *function.results) for d in _denominators(e))
+    found = Counter(_denominators([*statements, *function.results]))
     return frozenset(d for d, count in found.items() if count > 1)
 
 
-def _denominators(expression: Expression) -> Iterator[Expression]:
-    if isinstance(expression, Apply):
-        if expression.operator == "divide" and isinstance(expression.operands[1], Value | Read):
-            yield expression.operands[1]
-        for operand in expression.operands:
-            yield from _denominators(operand)
+def _denominators(stack: list[Expression]) -> Iterator[Expression]:
+    """What is divided by in expressions, in no order."""
+    while stack:
+        part = stack.pop()
+        if isinstance(part, Apply):
+            stack += part.operands
+            if part.operator == "divide" and isinstance(part.operands[1], Value | Read):
+                yield part.operands[1]
 
 
 @dataclass
@@ -101,17 +103,22 @@ class _Work:
 
     def node(self, expression: Expression) -> Node:
         """The node of an expression."""
+        if isinstance(expression, Value):
+            return self.values[expression.name]
+        if isinstance(expression, Apply):
+            return self._applied(expression)
+        if isinstance(expression, Number):
+            return self.target.graph.number(expression.value)
+        given = self.target.given.get(expression)
+        return given or self.target.graph.read(expression.argument, expression.index)
+
+    def _applied(self, tree: Apply) -> Node:
+        """The node of an operator on its operands."""
         graph, build = self.target.graph, self.target.build
-        match expression:
-            case Value(name):
-                return self.values[name]
-            case Number(value):
-                return graph.number(value)
-            case Read(argument, index):
-                return self.target.given.get(expression) or graph.read(argument, index)
-            case Apply("pi", ()):
-                return graph.pi()
-            case Apply("divide", (numerator, denominator)) if denominator in self.inverted:
-                reciprocal = build["divide"](graph.one, self.node(denominator))
-                return build["multiply"](self.node(numerator), reciprocal)
-        return build[expression.operator](*[self.node(e) for e in expression.operands])
+        if tree.operator == "divide" and tree.operands[1] in self.inverted:
+            numerator, denominator = tree.operands
+            reciprocal = build["divide"](graph.one, self.node(denominator))
+            return build["multiply"](self.node(numerator), reciprocal)
+        if tree.operator == "pi":
+            return graph.pi()
+        return build[tree.operator](*[self.node(e) for e in tree.operands])

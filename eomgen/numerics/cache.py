@@ -12,21 +12,9 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from eomgen import __version__
+from eomgen.cache_folder import root
 
-VARIABLE = "EOMGEN_CACHE"
 MOST = 64  # folders; the ones used longest ago go first
-
-
-def root() -> Path:
-    """The user's folder for what can be made again: $EOMGEN_CACHE, or the system's custom."""
-    chosen = os.environ.get(VARIABLE)
-    if chosen:
-        return Path(chosen)
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData/Local")) / "eomgen"
-    if sys.platform == "darwin":
-        return Path.home() / "Library/Caches/eomgen"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "eomgen"
 
 
 def key(parts: Iterable[object]) -> str:

@@ -6,13 +6,14 @@ from fractions import Fraction
 import sympy as sp
 
 from eomgen.errors import UsageError
-from eomgen.program import Apply, Expression, Number, Read, Value
+from eomgen.program import Apply, Expression, Number, Value
 from eomgen.render.dialects import Dialect
 
 INFIX = {"add": ("+", 1), "subtract": ("-", 1), "multiply": ("*", 2), "divide": ("/", 2)}
 UNARY, ATOM = 3, 4
+BINDING = {operator: level for operator, (_, level) in INFIX.items()} | {"negate": UNARY}
 
-Names = Mapping[Expression, str]
+Names = Mapping[Expression | str, str]  # of what is read; a value stands by its name
 
 
 def literal(value: Fraction) -> str:
@@ -37,36 +38,37 @@ def number(value: sp.Expr) -> str:
 
 def expression(tree: Expression, dialect: Dialect, names: Names) -> str:
     """`tree` as text; the language evaluates it in the order of the tree."""
-    return _printed(tree, dialect, names)[0]
-
-
-def _printed(tree: Expression, dialect: Dialect, names: Names) -> tuple[str, int]:
-    """The text and how tightly it binds."""
+    if isinstance(tree, Value):
+        return names[tree.name]
     if not isinstance(tree, Apply):
-        return _atom(tree, dialect, names)
+        return _number(tree, dialect) if isinstance(tree, Number) else names[tree]
     operator, operands = tree.operator, tree.operands
     if operator in INFIX:
         sign, level = INFIX[operator]
-        first, binding = _printed(operands[0], dialect, names)
-        first = first if binding >= level else f"({first})"
-        return f"{first} {sign} {_guarded(operands[1], level, dialect, names)}", level
+        first = expression(operands[0], dialect, names)
+        first = first if _binding(operands[0]) >= level else f"({first})"
+        return f"{first} {sign} {_guarded(operands[1], level, dialect, names)}"
     if operator == "negate":
-        return "-" + _guarded(operands[0], UNARY, dialect, names), UNARY
+        return "-" + _guarded(operands[0], UNARY, dialect, names)
     if operator == "pi":
-        return dialect.number.format("3.141592653589793"), ATOM
+        return dialect.number.format("3.141592653589793")
     arguments = ", ".join([expression(e, dialect, names) for e in operands])
-    return f"{dialect.calls[operator]}({arguments})", ATOM
+    return f"{dialect.calls[operator]}({arguments})"
 
 
-def _atom(tree: Number | Read | Value, dialect: Dialect, names: Names) -> tuple[str, int]:
-    """A number, argument or value, and how tightly it binds."""
-    if not isinstance(tree, Number):
-        return names[tree], ATOM
+def _number(tree: Number, dialect: Dialect) -> str:
     text = dialect.number.format(literal(abs(tree.value)))
-    return (f"-{text}", UNARY) if tree.value < 0 else (text, ATOM)
+    return f"-{text}" if tree.value < 0 else text
+
+
+def _binding(tree: Expression) -> int:
+    """How tightly the text of an expression binds."""
+    if isinstance(tree, Apply):
+        return BINDING.get(tree.operator, ATOM)
+    return UNARY if isinstance(tree, Number) and tree.value < 0 else ATOM
 
 
 def _guarded(operand: Expression, level: int, dialect: Dialect, names: Names) -> str:
     """A right operand: in parentheses unless it binds tighter than `level` and has no sign."""
-    text, binding = _printed(operand, dialect, names)
+    text, binding = expression(operand, dialect, names), _binding(operand)
     return text if binding > level and binding != UNARY else f"({text})"

@@ -8,12 +8,13 @@ import sympy as sp
 
 from eomgen.algebra.specialise import specialised, with_values
 from eomgen.algebra.specialise_alike import side_by_side
-from eomgen.program import OPERATORS, Expression, Program, Read, Solve, Value, Variable
+from eomgen.program import OPERATORS, Expression, Program, Read, Solve, Variable
 from eomgen.render.code import Names, expression, number
 from eomgen.render.dialects import C_FUNCTIONS, PLAIN, PYTHON, C, Dialect
 from eomgen.render.grouped import codes, groups
-from eomgen.render.lowered import atoms
+from eomgen.render.lowered import content
 from eomgen.render.names import escaped, prefix
+from eomgen.render.naming import components
 from eomgen.render.routines import Routine, routine
 
 WAVES = ("pair", "sine", "cosine")
@@ -51,11 +52,30 @@ class Style:
 
 
 @dataclass(frozen=True)
+class Constant:
+    """A number that a header defines; a `truth` is 0 or 1, everything else is of its real type."""
+
+    name: str
+    value: str
+    about: str
+    truth: bool = False
+
+
+@dataclass(frozen=True)
+class Remarks:
+    """What is known of a scene beside its code: lines of a comment, and numbers to program with."""
+
+    lines: tuple[str, ...] = ()
+    constants: tuple[Constant, ...] = ()
+
+
+@dataclass(frozen=True)
 class Code:
     """A program and how it is written, the subject of the targets C and Python."""
 
     program: Program
     style: Style = Style()
+    remarks: Remarks = Remarks()  # of the C header
 
     @property
     def name(self) -> str:
@@ -83,8 +103,9 @@ def _code(subject: Program | Code) -> Code:
 def interface(program: Program, dialect: Dialect) -> dict[str, Any]:
     """What every code template is given: plain text and numbers only."""
     reserved = dialect.reserved_members
-    functions = tuple(routine(f, program, dialect) for f in program.functions)
-    prepare = None if program.prepare is None else routine(program.prepare, program, dialect)
+    given = components(program, dialect)
+    functions = tuple(routine(f, program, dialect, given) for f in program.functions)
+    prepare = None if program.prepare is None else routine(program.prepare, program, dialect, given)
     everything = functions if prepare is None else (*functions, prepare)
     used = frozenset[str]().union(*(f.operators for f in everything))
     statements = [s for f in program.functions for s in f.statements]
@@ -136,7 +157,7 @@ def _fields(program: Program) -> tuple[Symbol, ...]:
 
 def _formula(tree: Expression, names: Names) -> str:
     """An expression over parameters as text; empty where it reads named values or is long."""
-    if any(isinstance(a, Value) for a in atoms(tree)):
+    if content((tree,)).values:
         return ""
     text = expression(tree, PLAIN, names)
     return text if len(text) <= LONGEST_FORMULA else ""
@@ -155,7 +176,12 @@ def c(subject: Program | Code) -> dict[str, object]:
     calls = [(C.calls[o], f, OPERATORS[o]) for o, f in C_FUNCTIONS.items() if o in used]
     unknown = tuple(v.name for v in program.parameters if v.value is None)
     open_codes = dict(zip(unknown, escaped(unknown, C.reserved), strict=True))
+    prepare, constants = context["prepare"], context["constants"]
+    prepared = () if prepare is None else prepare.body.results
     return context | {
+        "prepared": tuple((constants[i].code, text) for i, text in prepared),
+        "remarks": code.remarks.lines,
+        "defined": code.remarks.constants,
         "fast_trig": code.style.fast_trig,
         "batch": code.style.batch,
         "waves": waves,

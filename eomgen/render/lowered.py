@@ -1,10 +1,10 @@
 """A function as machines like it: powers as products, waves named, no dead values."""
 
 from collections import Counter
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import count
+from itertools import chain, count
 
 from eomgen.program import (
     Alike,
@@ -24,8 +24,66 @@ from eomgen.program import (
 
 UNROLLED = 64  # largest exponent written as products
 ONE = Number(Fraction(1))
-PLAIN = frozenset(("add", "subtract", "multiply", "divide"))  # these stay as they are
+PLAIN = frozenset(("add", "subtract", "multiply", "divide"))
+CHANGED = frozenset(("sin", "cos", "power", "negate"))  # all others stay as they are too
 Name = Callable[[Expression], Value]  # makes an assignment of its argument
+
+
+@dataclass(frozen=True)
+class Content:
+    """What is in expressions, from left to right: names of values, arguments, operators."""
+
+    values: tuple[str, ...]
+    reads: tuple[Read, ...]
+    operators: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Lowered:
+    """A function, and what is in each of its statements and in the results."""
+
+    function: Function
+    contents: tuple[Content, ...]
+    results: Content
+
+    @property
+    def content(self) -> Content:
+        """What is in the whole function."""
+        return merged((*self.contents, self.results))
+
+
+def content(expressions: Iterable[Expression]) -> Content:
+    """What is in some expressions."""
+    values: list[str] = []
+    reads: list[Read] = []
+    operators: list[str] = []
+    stack = [*expressions]
+    stack.reverse()
+    while stack:
+        part = stack.pop()
+        if isinstance(part, Apply):
+            operators.append(part.operator)
+            stack += part.operands[::-1]
+        elif isinstance(part, Value):
+            values.append(part.name)
+        elif isinstance(part, Read):
+            reads.append(part)
+    return Content(tuple(values), tuple(reads), tuple(operators))
+
+
+def merged(contents: Sequence[Content]) -> Content:
+    """Several contents, one behind the other."""
+    return Content(
+        tuple(chain.from_iterable([each.values for each in contents])),
+        tuple(chain.from_iterable([each.reads for each in contents])),
+        tuple(chain.from_iterable([each.operators for each in contents])),
+    )
+
+
+def surveyed(function: Function) -> Lowered:
+    """What is in a function that is as machines like it."""
+    contents = [content(operands(statement)) for statement in function.statements]
+    return Lowered(function, tuple(contents), content(function.results))
 
 
 def lower(function: Function) -> Function:
@@ -33,23 +91,35 @@ def lower(function: Function) -> Function:
 
     Every sine and cosine has a statement of its own.
     """
-    statements: list[Statement] = []
+    return lowered(function).function
+
+
+def lowered(function: Function) -> Lowered:
+    """`lower`, and what the statements are made of."""
     fresh = _fresh_names(function)
+    found: list[tuple[Statement, Content]] = []
+
+    def put(statement: Statement) -> None:
+        found.append((statement, content(operands(statement))))
 
     def name(expression: Expression) -> Value:
         value = Value(next(fresh))
-        statements.append(Assign(value.name, expression))
+        put(Assign(value.name, expression))
         return value
 
     for statement in function.statements:
-        statements.append(_lowered(statement, name))
+        inside = content(operands(statement))
+        if CHANGED.isdisjoint(inside.operators):
+            found.append((statement, inside))
+        else:
+            put(_lowered(statement, name))
     results = tuple(_simple(e, name) for e in function.results)
-    return _without_dead_values(replace(function, statements=tuple(statements), results=results))
+    return _without_dead_values(replace(function, results=results), found)
 
 
 def _fresh_names(function: Function) -> Iterator[str]:
     taken = {n for s in function.statements for n in defined(s)}
-    return (f"inner_{i}" for i in count(1) if f"inner_{i}" not in taken)
+    yield from (f"inner_{i}" for i in count(1) if f"inner_{i}" not in taken)
 
 
 def defined(statement: Statement) -> tuple[str, ...]:
@@ -129,30 +199,20 @@ def _product(base: Expression, exponent: int, name: Name) -> Expression:
     return Apply("multiply", (root, root))
 
 
-def atoms(expression: Expression) -> list[Number | Read | Value]:
-    """The numbers, arguments and values in an expression, from left to right."""
-    found: list[Number | Read | Value] = []
-    stack = [expression]
-    while stack:
-        part = stack.pop()
-        if isinstance(part, Apply):
-            stack.extend(reversed(part.operands))
-        else:
-            found.append(part)
-    return found
-
-
-def _without_dead_values(function: Function) -> Function:
+def _without_dead_values(
+    function: Function, statements: Sequence[tuple[Statement, Content]]
+) -> Lowered:
     """Backward over the statements: an assignment stays if something after it reads it."""
-    alive = {a.name for e in function.results for a in atoms(e) if isinstance(a, Value)}
-    kept: list[Statement] = []
-    for statement in reversed(function.statements):
-        if isinstance(statement, Assign) and statement.name not in alive:
-            continue
-        kept.append(statement)
-        for expression in operands(statement):
-            alive.update([a.name for a in atoms(expression) if isinstance(a, Value)])
-    return replace(function, statements=tuple(reversed(kept)))
+    results = content(function.results)
+    alive = {*results.values}
+    kept = []
+    for statement, inside in reversed(statements):
+        if not isinstance(statement, Assign) or statement.name in alive:
+            kept.append((statement, inside))
+            alive.update(inside.values)
+    kept.reverse()
+    live = replace(function, statements=tuple([statement for statement, _ in kept]))
+    return Lowered(live, tuple([inside for _, inside in kept]), results)
 
 
 def expressions(function: Function) -> tuple[Expression, ...]:
@@ -163,11 +223,4 @@ def expressions(function: Function) -> tuple[Expression, ...]:
 
 def operations(function: Function) -> Counter[str]:
     """How often each operator is applied; the loop of a `Solve` is not counted."""
-    counts: Counter[str] = Counter()
-    stack = list(expressions(function))
-    while stack:
-        part = stack.pop()
-        if isinstance(part, Apply):
-            counts[part.operator] += 1
-            stack.extend(part.operands)
-    return counts
+    return Counter(content(expressions(function)).operators)

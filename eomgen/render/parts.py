@@ -6,12 +6,12 @@ so do the results, in the first slots, until every pivot has been checked.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
 
-from eomgen.program import Alike, Expression, Function, Statement, Value, operands
-from eomgen.render.lowered import atoms, defined
+from eomgen.program import Alike, Expression, Statement, Value
+from eomgen.render.lowered import Content, Lowered, content, defined, merged
 
 Slots = tuple[tuple[Expression, int], ...]
 
@@ -23,6 +23,7 @@ class Part:
     statements: tuple[Statement, ...]
     loads: tuple[tuple[Value, int], ...]
     stores: Slots
+    content: Content  # of the statements, in order, and of the results among the stores
 
 
 @dataclass(frozen=True)
@@ -33,35 +34,56 @@ class Divided:
     slots: int
 
 
-def divided(function: Function, limit: int) -> Divided | None:
+def whole(lowered: Lowered) -> Part:
+    """A function as the only part of itself."""
+    function = lowered.function
+    stores = tuple((e, i) for i, e in enumerate(function.results))
+    return Part(function.statements, (), stores, lowered.content)
+
+
+def divided(lowered: Lowered, limit: int) -> Divided | None:
     """The parts of a function with more statements than `limit`, of half of it; else None.
 
     Loops over lanes have made a function short.
     """
-    statements = function.statements
+    statements = lowered.function.statements
     if len(statements) <= limit or any(isinstance(s, Alike) for s in statements):
         return None
     count = -(-2 * len(statements) // limit)
     size = -(-len(statements) // count)
-    chunks = [statements[i : i + size] for i in range(0, len(statements), size)]
-    return _connected(chunks, function.results)
+    starts = range(0, len(statements), size)
+    chunks = [statements[i : i + size] for i in starts]
+    contents = [lowered.contents[i : i + size] for i in starts]
+    return _connected(chunks, contents, lowered.function.results)
 
 
-def _connected(chunks: Sequence[tuple[Statement, ...]], results: Sequence[Expression]) -> Divided:
+def _connected(
+    chunks: Sequence[tuple[Statement, ...]],
+    contents: Sequence[Sequence[Content]],
+    results: Sequence[Expression],
+) -> Divided:
     """The parts with their loads and stores; a slot serves again when its value is dead."""
-    place = {Value(n): i for i, chunk in enumerate(chunks) for s in chunk for n in defined(s)}
+    made = [[n for s in chunk for n in defined(s)] for chunk in chunks]
+    place = {name: i for i, found in enumerate(made) for name in found}
     stored = _results_by_part(results, place, len(chunks))
-    reads = [_reads(chunk, stored[i]) for i, chunk in enumerate(chunks)]
-    last = {value: i for i, values in enumerate(reads) for value in values}
+    known = [
+        merged((*inside, content([e for e, _ in kept])))
+        for inside, kept in zip(contents, stored, strict=True)
+    ]
+    reads = [dict.fromkeys(found.values) for found in known]
+    last = {name: i for i, found in enumerate(reads) for name in found}
     shelf = _Shelf(len(results))
     parts = []
     for i, chunk in enumerate(chunks):
-        loads = tuple((v, shelf.slots[v]) for v in reads[i] if place[v] < i)
-        shelf.clear(v for v, _ in loads if last[v] == i)
-        values = (Value(n) for s in chunk for n in defined(s))
-        stores = tuple((v, shelf.put(v)) for v in values if last.get(v, i) > i)
-        parts.append(Part(chunk, loads, stores + stored[i]))
+        loads = [(name, shelf.slots[name]) for name in reads[i] if place[name] < i]
+        shelf.clear(name for name, _ in loads if last[name] == i)
+        stores = [(name, shelf.put(name)) for name in made[i] if last.get(name, i) > i]
+        parts.append(Part(chunk, _values(loads), _values(stores) + stored[i], known[i]))
     return Divided(tuple(parts), shelf.size)
+
+
+def _values(slots: Iterable[tuple[str, int]]) -> tuple[tuple[Value, int], ...]:
+    return tuple((Value(name), slot) for name, slot in slots)
 
 
 @dataclass
@@ -69,10 +91,10 @@ class _Shelf:
     """The slots of values that cross; the lowest free one is taken."""
 
     size: int
-    slots: dict[Value, int] = field(default_factory=dict)
+    slots: dict[str, int] = field(default_factory=dict)
     free: list[int] = field(default_factory=list)
 
-    def put(self, value: Value) -> int:
+    def put(self, value: str) -> int:
         """A slot for a value."""
         if not self.free:
             heappush(self.free, self.size)
@@ -80,29 +102,18 @@ class _Shelf:
         self.slots[value] = heappop(self.free)
         return self.slots[value]
 
-    def clear(self, values: Iterable[Value]) -> None:
+    def clear(self, values: Iterable[str]) -> None:
         """Free the slots of dead values."""
         for value in values:
             heappush(self.free, self.slots.pop(value))
 
 
 def _results_by_part(
-    results: Sequence[Expression], place: dict[Value, int], count: int
+    results: Sequence[Expression], place: dict[str, int], count: int
 ) -> list[Slots]:
     """For each part the results that are known at its end, in the slots of their numbers."""
     stored: list[list[tuple[Expression, int]]] = [[] for _ in range(count)]
     for number, result in enumerate(results):
-        part = max((place[a] for a in atoms(result) if isinstance(a, Value)), default=0)
+        part = max((place[name] for name in content((result,)).values), default=0)
         stored[part].append((result, number))
     return [tuple(slots) for slots in stored]
-
-
-def _reads(chunk: Sequence[Statement], stored: Slots) -> tuple[Value, ...]:
-    """The values that a part reads, each once, in order."""
-
-    def expressions() -> Iterator[Expression]:
-        for statement in chunk:
-            yield from operands(statement)
-        yield from (result for result, _ in stored)
-
-    return tuple(dict.fromkeys(a for e in expressions() for a in atoms(e) if isinstance(a, Value)))

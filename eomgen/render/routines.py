@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from eomgen.algebra.unroll import unrolled
 from eomgen.program import (
-    ARGUMENTS,
     OPERATORS,
     Alike,
     Apply,
@@ -20,34 +20,34 @@ from eomgen.program import (
     RequirePositive,
     Solve,
     Statement,
-    Value,
-    in_lane,
     operands,
 )
 from eomgen.render.code import Names, expression
 from eomgen.render.dialects import Dialect
-from eomgen.render.grouped import apart, groups
-from eomgen.render.lowered import atoms, expressions, lower, operations
-from eomgen.render.names import escaped, prefix
-from eomgen.render.parts import Part, divided
+from eomgen.render.grouped import apart
+from eomgen.render.lowered import content, lowered, operations, surveyed
+from eomgen.render.naming import LANE, Components, Survey, names_of, own_names, survey
+from eomgen.render.parts import Part, divided, whole
 
 COUNTED = {"add": "+", "subtract": "-", "negate": "-", "multiply": "*", "divide": "/"}
-READ = (*ARGUMENTS, "constants")
 ROWS = ("state", "accelerations", "inputs")  # what differs between the states of a batch
 WAVE_KINDS = {"sin": "sine", "cos": "cosine"}
-LANE = "lane"  # the variable of loops over lanes
 WORK = "work"  # the array of values that cross between the parts of a function
 WAVES = "waves"  # the array of sines and cosines of a batch
 
 
 @dataclass(frozen=True)
 class Argument:
-    """A local variable `code` that holds component `index`, called `name`, of `source`."""
+    """A local variable `code` that holds component `index`, called `name`, of `source`.
+
+    `member`: its name in the interface, where `source` has named components.
+    """
 
     code: str
     source: str
     index: int
     name: str
+    member: str = ""
 
 
 @dataclass(frozen=True)
@@ -146,110 +146,35 @@ class Routine:
     can_fail: bool  # a pivot is checked
 
 
-def routine(function: Function, program: Program, dialect: Dialect) -> Routine:
+def routine(function: Function, program: Program, dialect: Dialect, given: Components) -> Routine:
     """A function of the program as text, every argument that it reads in a variable of its own."""
-    whole_function = lower(function if dialect.loops else unrolled(function))
-    lowered, direct = apart(whole_function, groups(program))
-    found = _survey(expressions(lowered))
-    if direct and "constants" not in found.used:
-        found = replace(found, used=(*found.used, "constants"))
-    names = _names(lowered, found, program, dialect)
-    names |= {Value(name): f"m->c{first}[{LANE}]" for name, first in direct.items()}
-    text = _Text(dialect, names, _labels(program))
-    cut = divided(lowered, dialect.longest)
-    whole = Part(lowered.statements, (), tuple((e, i) for i, e in enumerate(lowered.results)))
+    plain = lowered(function if dialect.loops else unrolled(function))
+    short, direct = apart(plain.function, given.groups)
+    found = surveyed(short) if direct else plain
+    everything = whole(found)
+    read = survey(everything.content)
+    if direct and "constants" not in read.used:
+        read = replace(read, used=(*read.used, "constants"))
+    names = names_of(short, read, given, dialect.reserved | own_names(program, short))
+    names |= {name: f"m->c{first}[{LANE}]" for name, first in direct.items()}
+    text = _Text(dialect, names, given)
+    cut = divided(found, dialect.longest)
+    parts = (everything,) if cut is None else cut.parts
     return Routine(
-        lowered.name,
-        lowered.about,
-        lowered.shape,
-        text.body(whole, found) if cut is None else Body((), (), (), found.used),
-        () if cut is None else tuple(text.body(part, _survey_of(part)) for part in cut.parts),
-        tuple(map(text.lanes, (whole,) if cut is None else cut.parts)) if dialect.lanes else (),
+        function.name,
+        function.about,
+        function.shape,
+        text.body(everything, read) if cut is None else Body((), (), (), read.used),
+        () if cut is None else tuple(text.body(part, survey(part.content)) for part in parts),
+        tuple(map(text.lanes, parts)) if dialect.lanes else (),
         0 if cut is None else cut.slots,
-        len(lowered.results),
-        frozenset(operations(lowered)),
-        _counted(unrolled(whole_function)),
+        len(function.results),
+        frozenset(everything.content.operators),
+        _counted(plain.function, Counter(everything.content.operators)),
         function.arguments,
-        found.used,
+        read.used,
         _checks_pivots(function),
     )
-
-
-@dataclass(frozen=True)
-class _Survey:
-    """What expressions read: arguments by declaration, without the time, and names of values."""
-
-    reads: tuple[Read, ...]
-    values: tuple[str, ...]
-    used: tuple[str, ...]  # which of `READ`
-
-
-def _survey(trees: Iterable[Expression]) -> _Survey:
-    """All that is read, found in one pass."""
-    reads: dict[tuple[str, int], Read] = {}
-    values: dict[str, None] = {}
-    for tree in trees:
-        for atom in atoms(tree):
-            if isinstance(atom, Value):
-                values[atom.name] = None
-            elif isinstance(atom, Read):
-                reads[atom.argument, atom.index] = atom
-    found = {argument for argument, _ in reads}
-    given = [r for r in reads.values() if r.argument != "time"]
-    given.sort(key=lambda r: (READ.index(r.argument), r.index))
-    return _Survey(tuple(given), tuple(values), tuple(a for a in READ if a in found))
-
-
-def _survey_of(part: Part) -> _Survey:
-    inside = (e for s in part.statements for e in operands(s))
-    return _survey([*inside, *(e for e, _ in part.stores)])
-
-
-def _labels(program: Program) -> dict[str, list[str]]:
-    """The names of the components of every argument in the specification."""
-    prepared = program.prepare.results if program.prepare else ()
-    return {
-        "time": ["t"],
-        "state": [v.name for v in program.coordinates + program.speeds],
-        "accelerations": [f"{v.name}'" for v in program.speeds],
-        "inputs": [v.name for v in program.inputs],
-        "parameters": [v.name for v in program.parameters],
-        "constants": [f"c{i}" for i in range(len(prepared))],
-    }
-
-
-def _names(
-    function: Function, found: _Survey, program: Program, dialect: Dialect
-) -> dict[Expression, str]:
-    """The variable of everything that a function reads or computes."""
-    given = _labels(program)
-    arrays = _arrays(function)
-    values = list(dict.fromkeys([*found.values, *arrays]))
-    labels = [given[r.argument][r.index] for r in found.reads] + values
-    codes = escaped(labels, dialect.reserved | _own_names(program, function))
-    read: list[Expression] = [*found.reads, *map(Value, values)]
-    names = dict(zip(read, codes, strict=True)) | {Read("time", 0): "t"}
-    for array, lanes in arrays.items():
-        code = names[Value(array)]
-        names[Value(array)] = f"{code}[{LANE}]"
-        names |= {Value(in_lane(array, k)): f"{code}[{k}]" for k in range(lanes)}
-    return names
-
-
-def _arrays(function: Function) -> dict[str, int]:
-    """The values that have one entry for each lane, and how many."""
-    loops = [s for s in function.statements if isinstance(s, Alike)]
-    return {n: s.lanes for s in loops for n in (*(name for name, _ in s.given), *s.kept)}
-
-
-def _own_names(program: Program, function: Function) -> frozenset[str]:
-    """Names that our templates give to types, solvers and their arrays."""
-    own = {f"{prefix(program.name)}_{kind}" for kind in ("real", "params", "model", "status")}
-    for statement in function.statements:
-        if isinstance(statement, Solve):
-            place = statement.names[0]
-            own |= {f"matrix_of_{place}", f"solution_of_{place}", f"solve_{statement.size}"}
-    return frozenset(own)
 
 
 def _checks_pivots(function: Function) -> bool:
@@ -262,19 +187,22 @@ class _Text:
 
     dialect: Dialect
     names: Names
-    labels: dict[str, list[str]]
+    given: Components
 
     def of(self, tree: Expression) -> str:
         """An expression."""
         return expression(tree, self.dialect, self.names)
 
-    def body(self, part: Part, found: _Survey) -> Body:
+    def argument(self, read: Read) -> Argument:
+        """The variable of a component."""
+        source, index = read.argument, read.index
+        label, member = self.given.labels[source][index], self.given.members[source][index]
+        return Argument(self.names[read], source, index, label, member)
+
+    def body(self, part: Part, found: Survey) -> Body:
         """The statements of a function, or of a part of one, which read what was found."""
-        arguments = tuple(
-            Argument(self.names[r], r.argument, r.index, self.labels[r.argument][r.index])
-            for r in found.reads
-        )
-        loads = tuple(Argument(self.names[v], WORK, slot, v.name) for v, slot in part.loads)
+        arguments = tuple(map(self.argument, found.reads))
+        loads = tuple(Argument(self.names[v.name], WORK, slot, v.name) for v, slot in part.loads)
         return Body(
             arguments + loads,
             tuple(self.steps(part.statements)),
@@ -295,21 +223,21 @@ class _Text:
                 case _:
                     rest.append(statement)
         waves, read, slot = [], [], 0
-        for angle, names in found.items():
-            kind = "pair" if len(names) == 2 else WAVE_KINDS[next(iter(names))]
+        for angle, both in found.items():
+            kind = "pair" if len(both) == 2 else WAVE_KINDS[next(iter(both))]
             waves.append(Wave(kind, angle.argument, angle.index, slot))
-            for name in (names[w] for w in WAVE_KINDS if w in names):
-                read.append(Argument(self.names[Value(name)], WAVES, slot, name))
+            for name in (both[w] for w in WAVE_KINDS if w in both):
+                read.append(Argument(self.names[name], WAVES, slot, name))
                 slot += 1
-        left = replace(part, statements=tuple(rest))
-        body = self.body(left, _survey_of(left))
+        inside = content([e for s in rest for e in operands(s)] + [e for e, _ in part.stores])
+        body = self.body(replace(part, statements=tuple(rest)), survey(inside))
         return Lanes(tuple(waves), replace(body, arguments=body.arguments + tuple(read)))
 
     def steps(self, statements: Sequence[Statement]) -> Iterator[Step]:
         """The statements in order; a sine and its cosine are one step where the dialect likes."""
         waiting: Statement | None = None
         for statement in statements:
-            pair = _pair(waiting, statement) if self.dialect.pairs else None
+            pair = _pair(waiting, statement) if waiting is not None else None
             if pair is not None:
                 sine, cosine, angle = pair
                 yield Step("pair", self.names[sine], self.of(angle), self.names[cosine])
@@ -317,15 +245,17 @@ class _Text:
                 continue
             if waiting is not None:
                 yield self.step(waiting)
-            waiting = statement
+            waiting = statement if self.dialect.pairs and _is_wave(statement) else None
+            if waiting is None:
+                yield self.step(statement)
         if waiting is not None:
             yield self.step(waiting)
 
-    def bare(self, array: Value) -> str:
+    def bare(self, array: str) -> str:
         """An array without the lane."""
         return self.names[array].removesuffix(f"[{LANE}]")
 
-    def array(self, name: Value, entries: Sequence[Expression]) -> Given:
+    def array(self, name: str, entries: Sequence[Expression]) -> Given:
         """What a loop over lanes reads."""
         fixed = all(isinstance(e, Number) for e in entries)
         return Given(self.bare(name), tuple(map(self.of, entries)), fixed)
@@ -333,51 +263,62 @@ class _Text:
     def kept(self, statement: Assign, kept: Sequence[str]) -> Step:
         """An assignment in a loop over lanes."""
         kind = "keep" if statement.name in kept else "assign"
-        return Step(kind, self.names[Value(statement.name)], self.of(statement.expression))
+        return Step(kind, self.names[statement.name], self.of(statement.expression))
 
     def step(self, statement: Statement) -> Step:
         """One statement."""
         match statement:
-            case Assign(name, Apply("sin" | "cos" as wave, (angle,))) if self.dialect.pairs:
-                return Step(WAVE_KINDS[wave], self.names[Value(name)], self.of(angle))
+            case Assign(name, tree) if self.dialect.pairs and _is_wave(statement):
+                assert isinstance(tree, Apply)
+                return Step(WAVE_KINDS[tree.operator], self.names[name], self.of(tree.operands[0]))
             case Assign(name, tree):
-                return Step("assign", self.names[Value(name)], self.of(tree))
+                return Step("assign", self.names[name], self.of(tree))
             case RequirePositive(value, scale):
-                return Step("require", self.names[value], scale=self.of(scale))
+                return Step("require", self.names[value.name], scale=self.of(scale))
             case Alike(lanes, given, statements, kept):
                 return Step(
                     "alike",
                     size=lanes,
-                    given=tuple(self.array(Value(name), entries) for name, entries in given),
+                    given=tuple(self.array(name, entries) for name, entries in given),
                     steps=tuple(self.kept(s, kept) for s in statements),
-                    kept=tuple(self.bare(Value(name)) for name in kept),
+                    kept=tuple(self.bare(name) for name in kept),
                 )
             case Solve(unknowns, matrix, right):
-                places = [(Value(name), i) for i, name in enumerate(unknowns)]
                 return Step(
                     "solve",
                     name=unknowns[0],
-                    values=tuple((self.names[v], i) for v, i in places if v in self.names),
+                    values=self.solution(unknowns),
                     matrix=tuple(map(self.of, matrix)),
                     right=tuple(map(self.of, right)),
                     size=statement.size,
                 )
 
+    def solution(self, unknowns: Sequence[str]) -> tuple[tuple[str, int], ...]:
+        """The names of what is read of a solution, and where it stands."""
+        return tuple((self.names[x], i) for i, x in enumerate(unknowns) if x in self.names)
 
-def _pair(first: Statement | None, second: Statement) -> tuple[Value, Value, Expression] | None:
+
+def _is_wave(statement: Statement) -> bool:
+    """Whether a statement may be one half of a pair."""
+    tree = statement.expression if isinstance(statement, Assign) else None
+    return isinstance(tree, Apply) and tree.operator in WAVE_KINDS
+
+
+def _pair(first: Statement, second: Statement) -> tuple[str, str, Expression] | None:
     """Sine, cosine and their angle, where two statements compute these."""
     match first, second:
         case Assign(a, Apply("sin", (x,))), Assign(b, Apply("cos", (y,))) if x == y:
-            return Value(a), Value(b), x
+            return a, b, x
         case Assign(a, Apply("cos", (x,))), Assign(b, Apply("sin", (y,))) if x == y:
-            return Value(b), Value(a), x
+            return b, a, x
     return None
 
 
-def _counted(function: Function) -> str:
+def _counted(function: Function, applied: Counter[str]) -> str:
     """Operations in the order of `OPERATORS`; a system that a loop solves is named by its size."""
     counts: dict[str, int] = {}
-    applied = operations(function)
+    flat = unrolled(function)
+    applied = applied if flat is function else operations(flat)
     for operator in OPERATORS:
         if applied[operator] and operator != "pi":
             sign = COUNTED.get(operator, operator)

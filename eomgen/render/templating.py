@@ -2,13 +2,18 @@
 
 import re
 import traceback
+from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import jinja2
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
+from eomgen import __version__
+from eomgen.cache_folder import root
 from eomgen.errors import UsageError
+from eomgen.render.lines import named, rows, short_statements, statements, wrap
 
 SUFFIX = ".j2"
 
@@ -20,28 +25,35 @@ def shipped(folder: str) -> Path:
     return installed if installed.is_dir() else package.parent / folder
 
 
+class _Compiled(jinja2.FileSystemBytecodeCache):
+    """Compiled templates in the user's cache; where that cannot be written they are made again."""
+
+    def dump_bytecode(self, bucket: jinja2.bccache.Bucket) -> None:
+        """Keep a template."""
+        with suppress(OSError):
+            super().dump_bytecode(bucket)
+
+
+def _compiled() -> _Compiled | None:
+    """The cache of this version; None where there can be no folder for it."""
+    folder = root() / f"templates-{__version__}-{jinja2.__version__}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return None
+    return _Compiled(str(folder))
+
+
 class _Sandbox(ImmutableSandboxedEnvironment):
     """Templates see text and numbers: a SymPy object would take text to `eval`."""
 
     def is_safe_attribute(self, obj: object, attr: str, value: object) -> bool:
         """Whether a template may read `obj.attr`."""
+        if type(obj).__module__.startswith("eomgen.render."):  # a record of text and numbers
+            return not attr.startswith("_")
         return not type(obj).__module__.startswith("sympy") and super().is_safe_attribute(
             obj, attr, value
         )
-
-
-def wrap(text: str, indent: int = 0, hanging: int = 4, width: int = 100) -> str:
-    """`text` broken at spaces; each line after the first starts `hanging` further right."""
-    left, further = " " * indent, " " * (indent + hanging)
-    if len(text) + indent <= width and "\n" not in text:
-        return left + text
-    lines, line = [], left
-    for word in text.split():
-        if len(line) + len(word) > width and line.strip():
-            lines.append(line.rstrip())
-            line = further
-        line += word + " "
-    return "\n".join([*lines, line.rstrip()])
 
 
 def one_line(text: str) -> str:
@@ -74,6 +86,10 @@ def docstring(text: str) -> str:
 
 FILTERS = {
     "wrap": wrap,
+    "rows": rows,
+    "named": named,
+    "statements": statements,
+    "short_statements": short_statements,
     "one_line": one_line,
     "c_comment": c_comment,
     "c_string": c_string,
@@ -86,6 +102,16 @@ def environment(user_folder: Path | None = None) -> jinja2.Environment:
     """Our templates, behind those of `user_folder`; ours also under the prefix `builtin/`."""
     if user_folder is not None and not user_folder.is_dir():
         raise UsageError(f"{user_folder}: no such folder of templates")
+    return _made(user_folder) if user_folder else _shipped()
+
+
+@cache
+def _shipped() -> jinja2.Environment:
+    """Our templates alone, which are compiled once."""
+    return _made(None)
+
+
+def _made(user_folder: Path | None) -> jinja2.Environment:
     ours = jinja2.FileSystemLoader(shipped("templates"))
     folders = [jinja2.FileSystemLoader(user_folder)] if user_folder else []
     made = _Sandbox(
@@ -95,6 +121,7 @@ def environment(user_folder: Path | None = None) -> jinja2.Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
         autoescape=False,
+        bytecode_cache=_compiled(),
     )
     made.filters.update(FILTERS)
     return made
