@@ -33,12 +33,16 @@ from eomgen.cli_common import (
     print_files,
     reporting,
     spec_argument,
+    stability_inputs,
     studied,
     templates_option,
+    with_stability_option,
 )
 from eomgen.cli_import import import_robot
+from eomgen.cli_precision import measured
 from eomgen.cli_regressor import regressor
 from eomgen.cli_simulate import simulate
+from eomgen.cli_stability import stability
 from eomgen.errors import EomgenError, UsageError
 from eomgen.wanted import Wanted, wanted
 
@@ -111,6 +115,8 @@ def derive(spec: str, format_: str, formulation: str, **wishes: Any) -> None:
 @code_options
 @integrator_option
 @compensated_option
+@with_stability_option
+@click.option("--input", "inputs", multiple=True, metavar="NAME=VALUE", help="With stability.")
 @functions_option
 @list_functions_option
 @format_option
@@ -128,7 +134,8 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
         notes = not NOTES.isdisjoint(targets)
         if wishes["method"] and not notes:
             raise UsageError("--method is how the notes derive: add -t latex or -t text")
-        only = () if integrators else functions
+        stable = stability_inputs(targets, wishes)
+        only = () if integrators or wishes["with_stability"] else functions
         choice = replace(choice, notes=notes, method=wishes["method"], functions=only)
         style = code_style(targets, wishes)
     study = studied(spec, format_, choice)
@@ -141,8 +148,10 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
         integrators,
         wishes["compensated"],
         style,
+        stable,
     )
-    made = rendered(study, wish)
+    with reporting(format_, files.shown(spec)):
+        made = rendered(study, wish)
     if output == files.STANDARD:
         print_files(made)
         return
@@ -150,17 +159,20 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
         click.echo(str(path))
 
 
-@commands.command(epilog=epilog("eomgen check specs/*.yaml", "eomgen check a.yaml --format json"))
+@commands.command(epilog=epilog("eomgen check specs/*.yaml", "eomgen check a.yaml --precision"))
 @click.argument("specs", nargs=-1, required=True)
+@click.option("--precision", is_flag=True, help="Measure the code in float and double.")
 @format_option
-def check(specs: tuple[str, ...], format_: str) -> None:
+def check(specs: tuple[str, ...], precision: bool, format_: str) -> None:
     """Check SPECS: language, names, units, degrees of freedom, claims, and the proof."""
     from eomgen.outputs import summary
 
     worst = 0
     for spec in specs:
         try:
-            click.echo(summary(files.shown(spec), derived(spec), format_))
+            study = derived(spec)
+            said = summary(files.shown(spec), study, format_)
+            click.echo(measured(study, said, format_) if precision else said)
         except EomgenError as error:
             complain(error, format_, files.shown(spec), err=format_ != "json")
             worst = max(worst, error.exit_code)
@@ -315,6 +327,7 @@ def templates(action: str, names: tuple[str, ...], output: Path) -> None:
 commands.add_command(import_robot)
 commands.add_command(simulate)
 commands.add_command(chart)
+commands.add_command(stability)
 
 
 def main() -> NoReturn:

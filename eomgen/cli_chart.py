@@ -13,6 +13,8 @@ from eomgen.cli_common import (
     decoded,
     epilog,
     format_option,
+    integrators_option,
+    listed,
     positive,
     reporting,
     spec_argument,
@@ -21,12 +23,6 @@ from eomgen.cli_common import (
 from eomgen.errors import UsageError
 
 MOST_STEPS = 40
-
-
-def _list(context: click.Context, option: click.Parameter, value: str | None) -> tuple[str, ...]:
-    """Words between commas, each once."""
-    del context, option
-    return tuple(dict.fromkeys(w.strip() for w in (value or "").split(",") if w.strip()))
 
 
 def _steps(
@@ -64,9 +60,9 @@ def _steps(
 )  # fmt: skip
 @positive("--budget-us", help="CPU time of a step that you can spend [us].")
 @positive("--horizon", default=10.0, show_default=True, help="Length of the runs [s].")
-@click.option("--formulations", callback=_list, help="Such as minimal,nullspace.  [default: all]")
-@click.option("--integrators", callback=_list, help="Such as rk4,verlet.  [default: all]")
-@click.option("--precisions", default="f64,f32", show_default=True, callback=_list)
+@click.option("--formulations", callback=listed, help="Such as minimal,nullspace.  [default: all]")
+@integrators_option
+@click.option("--precisions", default="f64,f32", show_default=True, callback=listed)
 @click.option("--steps", callback=_steps, help="LARGEST:SMALLEST:COUNT [s].  [default: by modes]")
 @positive(
     "--seconds", default=40.0, show_default=True,

@@ -41,6 +41,12 @@ def positive(*names: str, **more: Any) -> Callable[[Command], Command]:
     return click.option(*names, type=float, callback=_positive, **more)
 
 
+def listed(context: click.Context, option: click.Parameter, value: str | None) -> tuple[str, ...]:
+    """Words between commas, each once."""
+    del context, option
+    return tuple(dict.fromkeys(w.strip() for w in (value or "").split(",") if w.strip()))
+
+
 spec_argument = click.argument("spec", type=str)
 language_option = click.option(
     "--lang", "language", type=LANGUAGES, default="en", show_default=True, help="Language of prose."
@@ -71,9 +77,32 @@ integrator_option = click.option(
     "integrators",
     multiple=True,
     metavar="METHOD",
-    help="A step function in C, repeatable: semi-euler, verlet, rk4, dopri5, rosenbrock2, "
-    "midpoint, all.",
+    help="A step function in C, repeatable: semi-euler, semi-euler-damped, verlet, rk4, "
+    "dopri5, rosenbrock2, midpoint, all.",
 )
+integrators_option = click.option(
+    "--integrators", callback=listed, help="Such as rk4,verlet.  [default: all]"
+)
+with_stability_option = click.option(
+    "--with-stability",
+    is_flag=True,
+    help="Limits of fixed steps in the C header, as `eomgen stability` finds them.",
+)
+
+
+def stability_inputs(targets: Sequence[str], wishes: Mapping[str, Any]) -> tuple[str, ...] | None:
+    """The inputs for which stability is written into the header; None: it is not.
+
+    Raises:
+        UsageError: it is asked for, but no C is written; inputs are given, but not asked for.
+    """
+    if wishes["inputs"] and not wishes["with_stability"]:
+        raise UsageError("--input is a value for --with-stability; add it")
+    if wishes["with_stability"] and "c" not in targets:
+        raise UsageError("--with-stability is about C, which is not written; add -t c")
+    return wishes["inputs"] if wishes["with_stability"] else None
+
+
 compensated_option = click.option(
     "--compensated", is_flag=True, help="Integrators keep what rounding loses: for float."
 )

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from eomgen.simulate_run import Job
 
 METHODS = (
-    "auto", "semi-euler", "verlet", "rk4", "dopri5", "rosenbrock2", "midpoint",
+    "auto", "semi-euler", "semi-euler-damped", "verlet", "rk4", "dopri5", "rosenbrock2", "midpoint",
     "dop853", "lsoda", "radau", "cvode",
 )  # fmt: skip
 INTERRUPTED = 130  # as a shell says it of SIGINT

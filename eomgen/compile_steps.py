@@ -13,13 +13,13 @@ from eomgen.algebra.arithmetic import evaluate, over
 from eomgen.algebra.assemble import assemble
 from eomgen.algebra.elementary import maximum, minimum
 from eomgen.algebra.graph import LEAVES, Node, below
-from eomgen.checks import separable
-from eomgen.compile import Machine, solved
+from eomgen.checks import damping, separable
+from eomgen.compile import LARGEST_UNROLLED, Machine, solved
 from eomgen.errors import UsageError
 from eomgen.functions import table
 from eomgen.functions.motion import Motion
 from eomgen.integrators.methods import Method
-from eomgen.mechanics import speeds
+from eomgen.mechanics import multipliers, speeds
 from eomgen.model import TIME
 from eomgen.program import Function
 
@@ -58,26 +58,40 @@ def functions(scene: Scene, methods: Sequence[Method]) -> tuple[Function, ...]:
             "stick or slip, so that a step needs events; call the functions of the modes instead"
         )
     for method in methods:
-        if obstacle := OBSTACLES.get(method.kind, _none)(scene.machine):
-            raise UsageError(
-                f"E-SYM: {method.name} is not symplectic for this model ({obstacle}); "
-                "expect energy drift of order h; use rk4"
-            )
+        if said := refusal(scene, method):
+            raise UsageError(said)
     wanted = [f for kind, names in NEEDS.items() if kind in kinds for f in names]
     found = [FUNCTIONS[name](scene) for name in dict.fromkeys((*ALWAYS, *wanted))]
     return tuple(f for f in found if f is not None)
 
 
-def _none(machine: Machine) -> str:
-    return ""
+# kind of a method -> what a scene has against it, and how that is said
+OBSTACLES: dict[str, tuple[Callable[[Machine], str], str]] = {
+    "verlet": (
+        separable.obstacle,
+        "E-SYM: {name} is not symplectic for this model ({why}); "
+        "expect energy drift of order h; use rk4",
+    ),
+    "semi_euler_damped": (
+        damping.obstacle,
+        "E-DAMP: {name} needs applied forces that damp and are linear in the speeds ({why}); "
+        "use semi-euler or rosenbrock2",
+    ),
+}
 
 
-OBSTACLES = {"verlet": separable.obstacle}  # kind of a method -> why a scene cannot have it
+def refusal(scene: Scene, method: Method) -> str:
+    """Why a method is not what it should be for this scene, with the remedy; empty if it is."""
+    if method.kind not in OBSTACLES:
+        return ""
+    find, words = OBSTACLES[method.kind]
+    why = find(scene.machine)
+    return words.format(name=method.name, why=why) if why else ""
 
 
 def offers(scene: Scene, method: Method) -> bool:
     """Whether a method is what it should be for this scene."""
-    return not OBSTACLES.get(method.kind, _none)(scene.machine)
+    return not refusal(scene, method)
 
 
 def state_jacobian(m: Machine) -> Function:
@@ -95,6 +109,23 @@ def _rates(scene: Scene) -> Function | None:
     if not m.model.speeds:
         return None
     return assemble("rates", "q', the rates of the coordinates", (len(m.rates),), m.rates, m.pivots)
+
+
+def _damping_jacobian(scene: Scene) -> Function:
+    """-M^-1 D, or what the constraints leave of it: du'/du by the applied forces alone."""
+    m = scene.machine
+    columns = list(zip(*damping.matrix(m), strict=True))
+    if m.kept:
+        still = [m.kinematics.algebra.number(0)] * len(m.schur.rows)
+        found, pivots = multipliers.responses(m.schur, m.inertia, [[*c, *still] for c in columns])
+    elif len(columns) > LARGEST_UNROLLED:
+        found, pivots = ldl.solve_in_loop(m.mass_matrix, *columns), ()
+    else:
+        found, pivots = ldl.solve(m.mass_matrix, *columns)
+    entries = [-entry for row in zip(*found, strict=True) for entry in row]
+    about = "-M^-1 D, D = -dQ/du: the derivatives of u' by u through the applied forces alone"
+    shape = (len(columns), len(columns))
+    return assemble("damping_jacobian", about, shape, entries, m.pivots + pivots)
 
 
 def _momentum(m: Machine) -> list[Node]:
@@ -163,6 +194,7 @@ Build = Callable[[Scene], Function | None]
 FUNCTIONS: dict[str, Build] = {
     "state_jacobian": _jacobian,
     "rates": _rates,
+    "damping_jacobian": _damping_jacobian,
     "momenta": _momenta,
     "momentum_rates": _momentum_rates,
     "rates_of_momenta": _rates_of_momenta,
@@ -171,6 +203,7 @@ FUNCTIONS: dict[str, Build] = {
 ALWAYS = ("constraint_margin",)
 NEEDS = {  # kind of a method -> functions, where the scene has them
     "semi_euler": ("rates",),
+    "semi_euler_damped": ("rates", "damping_jacobian"),
     "rosenbrock": ("state_jacobian",),
     "midpoint": ("state_jacobian", "momenta", "momentum_rates", "rates_of_momenta"),
 }

@@ -31,7 +31,7 @@ from eomgen.program import (
 )
 
 __all__ = [
-    "EXACT", "FLOAT", "NUMPY", "Arithmetic", "NotDefined", "SingularMassMatrix",
+    "EXACT", "FLOAT", "NUMPY", "Arithmetic", "Memory", "NotDefined", "SingularMassMatrix",
     "call", "mpmath_arithmetic", "run",
 ]  # fmt: skip
 
@@ -40,7 +40,7 @@ class NotDefined(CheckError):
     """A formula has no real value at the state that was asked for."""
 
 
-class _Memory:
+class Memory:
     """The arguments and the values assigned so far."""
 
     def __init__(self, arguments: Mapping[str, Sequence[Any]], arithmetic: Arithmetic) -> None:
@@ -86,7 +86,7 @@ def run(
     not read may be absent; with NUMPY an entry may be an array over states.
     Raises SingularMassMatrix, and NotDefined where a formula has no real value.
     """
-    memory = _Memory(arguments, arithmetic)
+    memory = Memory(arguments, arithmetic)
     try:
         for statement in unrolled(function).statements:
             memory.execute(statement)

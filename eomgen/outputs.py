@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, log10
 from pathlib import Path
 from typing import Any
@@ -36,6 +36,7 @@ class Wish:
     integrators: tuple[str, ...] = ()
     compensated: bool = False
     style: Style = Style()
+    stability: tuple[str, ...] | None = None  # inputs NAME=VALUE of its findings in the C header
 
 
 def _notes(study: Study, wish: Wish) -> Named:
@@ -63,6 +64,15 @@ def _program(study: Study, wish: Wish) -> Named:
     return coded(_chosen(study, wish), wish.style)
 
 
+def _c_program(study: Study, wish: Wish) -> Named:
+    if wish.stability is None:
+        return _program(study, wish)
+    from eomgen.stability import header, make, records
+
+    found = make.findings(study, records.Wish(inputs=wish.stability))
+    return replace(coded(_chosen(study, wish), wish.style), remarks=header.remarks(found))
+
+
 def _chosen(study: Study, wish: Wish) -> Program:
     """The program with the functions that were asked for, and those that integrators call."""
     steps = _steps(study, wish) if wish.integrators else None
@@ -84,7 +94,7 @@ def _steps(study: Study, wish: Wish) -> Steps:
 SUBJECTS: dict[str, Callable[[Study, Wish], Named]] = {
     "latex": _notes,
     "text": _notes,
-    "c": _program,
+    "c": _c_program,
     "c-steps": _steps,
     "python": _program,
 }

@@ -18,7 +18,7 @@ from eomgen.cli import commands
 
 COMMANDS = [
     "chart", "check", "derive", "evaluate", "examples", "generate", "import", "new", "regressor",
-    "schema", "simulate", "statics", "templates",
+    "schema", "simulate", "stability", "statics", "templates",
 ]  # fmt: skip
 EQUATION = "m l² φ″ + d φ′ + m l g sin φ = τ"
 STATE = {"coordinates": {"phi": "0.1"}, "rates": {"phi": 2}, "inputs": {"tau": 0.5}}
@@ -84,7 +84,7 @@ USAGE = {
     ("derife", "a.yaml"): "No such command 'derife'",
     ("derive",): "Missing argument 'SPEC'",
     ("check",): "Missing argument 'SPECS...'",
-    ("generate", "a.yaml", "--ouput", "x"): "No such option '--ouput'. Did you mean '--output'?",
+    ("generate", "a.yaml", "--ouput", "x"): "Did you mean one of: '--input', '--output'?",
     ("generate", "a.yaml", "-t", "fortran"): "not one of 'latex', 'c', 'python', 'text'",
     ("derive", "a.yaml", "--lang", "fr"): "not one of 'en', 'es'",
     ("check", "a.yaml", "--format", "xml"): "not one of 'text', 'json', 'github'",
@@ -225,7 +225,7 @@ def test_check_goes_on_after_a_bad_spec_and_answers_the_worst(call):
     said = call("check", "wrong.yaml", "false.yaml", "missing.yaml", "good.yaml")
     assert said.code == 2
     (line,) = said.output.splitlines()
-    assert line.startswith("good.yaml: 1 degree of freedom; engine: articulated bodies, ")
+    assert line.startswith("good.yaml: 1 degree of freedom; engine: tensions of rods, ")
     assert "; checked: Lagrange = Newton-Euler" in line
     assert "dimensions of" in line
     for name in ("wrong.yaml:4:1:", "false.yaml: error: expect", "missing.yaml: error: cannot"):

@@ -66,7 +66,7 @@ def test_without_folding_the_model_is_prepared(generate):
     header = Path("out/double_pendulum.h").read_text()
     members = re.search(r"typedef struct \{\n(.*?)\} double_pendulum_model;", header, re.DOTALL)
     assert "double_pendulum_params p;" in members[1]
-    assert "/**< 0.5 * m_1 */" in members[1]
+    assert "/**< 0.5 * m_2 */" in members[1]
     assert "folded" not in header
 
 

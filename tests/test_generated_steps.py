@@ -105,6 +105,10 @@ def test_without_integrators_there_are_no_steps(tmp_path):
         ("duffing_oscillator", ["--integrator", "verlet"], "(the forces depend on x')"),
         ("four_bar", ["--integrator", "verlet"], "(the constraint forces depend on the rates)"),
         ("satellite", ["--integrator", "verlet"], "(the speeds are not the rates"),
+        ("double_pendulum", ["--integrator", "semi-euler-damped"],
+         "E-DAMP: semi-euler-damped needs applied forces that damp and are linear in the speeds "
+         "(no force depends on the speeds); use semi-euler or rosenbrock2"),
+        ("projectile_drag", ["--integrator", "semi-euler-damped"], "(the forces are not linear in"),
         ("simple_pendulum", ["--integrator", "euler"], "there is no integrator 'euler'; there are"),
         ("painleve_rod", ["--integrator", "all"], "rail has friction on both sides: the motion is"),
         ("simple_pendulum", ["--compensated"], "say --integrator too"),

@@ -73,6 +73,10 @@ ALLOWED: dict[str, set[str]] = {
     "simulate_run": RECORDS
     | {"compile_places", "numerics", "render", "simulate", "simulate_method", "simulate_report"}
     | {"simulate_setup", "simulate_table", "study"},
+    "stability": RECORDS
+    | {"analysis", "chart", "checks", "compile_steps", "integrators", "mechanics", "numerics"}
+    | {"render", "simulate_method", "simulate_setup", "states", "stepping", "study"},
+    "cli_stability": {"cli_common", "errors", "files", "stability", "wanted"},
     "cli_simulate": {"cli_common", "errors", "files", "simulate_run", "wanted"},
     "chart": RECORDS
     | {"compile_steps", "formulation", "integrators", "numerics", "render", "simulate"}
@@ -89,17 +93,24 @@ ALLOWED: dict[str, set[str]] = {
     "output_links": {"analysis", "compile", "formulation", "mechanics", "render"},
     "outputs": RECORDS
     | {"checks", "functions", "integrators", "output_links", "analysis", "mechanics", "render"}
+    | {"stability"}
     | {"spec", "stepping", "study"},
     "cli_common": {"errors", "files", "functions", "outputs", "render", "spec", "study", "wanted"},
+    "precision": RECORDS
+    | {"algebra", "analysis", "checks", "evaluate", "formulation", "interpreter", "mechanics"}
+    | {"numerics", "render", "study"},
+    "cli_precision": {"precision", "spec", "study"},
     "cli_regressor": {"cli_common", "files", "functions", "study", "wanted"},
     "urdf": {"__init__", "errors", "spec"},
     "cli_import": {"cli_common", "errors", "files", "shelf", "spec", "urdf"},
     "cli": {
         "__init__",
         "cli_import",
+        "cli_precision",
         "cli_chart",
         "cli_common",
         "cli_simulate",
+        "cli_stability",
         "cli_regressor",
         "errors",
         "files",

@@ -58,8 +58,9 @@ METHODS = {
     "dop853": (), "lsoda": (), "radau": (), "cvode": (), "auto": (),
     "rk4": ("--step", 0.001), "dopri5": ("--step", 0.001), "rosenbrock2": ("--step", 0.0002),
     "midpoint": ("--step", 0.0002), "semi-euler": ("--step", 0.00005),
+    "semi-euler-damped": ("--step", 0.00005),
 }  # fmt: skip
-LOOSE = {"rosenbrock2": 1e-5, "midpoint": 1e-5, "semi-euler": 3e-3}
+LOOSE = {"rosenbrock2": 1e-5, "midpoint": 1e-5, "semi-euler": 3e-3, "semi-euler-damped": 3e-3}
 
 
 QUICK = ("dop853", "cvode")

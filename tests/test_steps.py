@@ -6,17 +6,24 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from stepped import SCENES, engine_c, engine_python, methods_of, run, start, steps_of
+from tools import tool
 
+from eomgen import stepping, study
+from eomgen.errors import UsageError
 from eomgen.integrators.methods import METHODS
-from eomgen.numerics import integrate
+from eomgen.numerics import integrate, steps_python
 from eomgen.numerics.engine_c import EngineC
+from eomgen.numerics.engine_python import EnginePython
 from eomgen.numerics.records import NOT_FINITE, RESIDUAL, SINGULAR, STOPPED, Arguments, Grid
+from eomgen.wanted import Wanted
 
 QUICK = ("skew_arm", "four_bar")
 SCENE = [pytest.param(n, marks=() if n in QUICK else pytest.mark.slow) for n in SCENES]
 # which methods a scene has is known here without deriving it; a test below holds it to that
-OFFERED = {name: tuple(m for m in METHODS if m != "verlet") for name in SCENES}
-OFFERED["sprung_pair"] = tuple(METHODS)
+PLAIN = tuple(m for m in METHODS if m not in ("verlet", "semi-euler-damped"))
+OFFERED = dict.fromkeys(SCENES, PLAIN)
+OFFERED["sprung_pair"] = tuple(m for m in METHODS if m != "semi-euler-damped")
+OFFERED["skew_arm"] = tuple(m for m in METHODS if m != "verlet")
 EVERY = [
     pytest.param(name, method, marks=() if name in QUICK else pytest.mark.slow)
     for name in SCENES
@@ -235,3 +242,140 @@ def test_time_is_counted_and_not_summed():
     other = double.advance(Grid(0.0, 1e-3, 2_000_000, 1), 1_000_000, 1)
     assert rows.times.tolist() == [1000.001]
     np.testing.assert_allclose(rows.states, other.states, rtol=1e-3, atol=1e-5)
+
+
+DAMPED_FOUR_BAR = """\
+eom: 1
+system: Four-bar linkage with a stiff damper
+space: plane
+gravity: [0, -g]
+parameters:
+  {a: 0.4 m, b: 1 m, c: 0.9 m, e: 1 m, m: 1 kg, g: 9.81 m/s^2, d: 2 N*m*s}
+coordinates:
+  q1: {unit: rad, role: free}
+  q2: {unit: rad, role: linked}
+  q3: {unit: rad, role: linked}
+points:
+  A: [0, 0]
+  D: [e, 0]
+  B: A + a*[cos(q1), sin(q1)]
+  C: B + b*[cos(q2), sin(q2)]
+  Cr: D + c*[cos(q3), sin(q3)]
+bodies:
+  crank: {rod: [A, B], mass: m}
+  coupler: {rod: [B, C], mass: m}
+  rocker: {rod: [D, Cr], mass: m}
+dampers:
+  - {along: q2 - q1, damping: d}
+  - {along: q3, damping: d}
+constraints:
+  loop: {holonomic: C = Cr, reaction: pin}
+initial: {q1: 0.5 rad, q1': 0 rad/s, guess: {q2: 40 deg, q3: 80 deg, q2': 0 rad/s, q3': 0 rad/s}}
+"""
+
+
+def damped_steps(formulation):
+    found = study.of_text(DAMPED_FOUR_BAR, "scene.yaml", Wanted(formulation))
+    return stepping.of(found, ("semi-euler", "semi-euler-damped"))
+
+
+def damped(formulation):
+    """The steps, the engine of C, its arguments, and the start, which is at rest."""
+    tool("cc")
+    steps = damped_steps(formulation)
+    given = Arguments((), tuple(float(p.value) for p in steps.program.parameters))
+    state = start(steps)
+    state[len(steps.program.coordinates) :] = 0
+    return steps, EngineC(steps, given), given, state
+
+
+def damped_change(engine, state, h):
+    """(M + h D) du - J' l = h (Q - bias), J du = 0 (gamma is zero at rest), D by differences."""
+    u = len(engine.steps.program.speeds)
+    names = ("mass_matrix", "bias", "generalized_forces")
+    mass, bias, force = (engine.function(name)(0.0, state) for name in names)
+    moved = [state + np.eye(len(state))[i - u] for i in range(u)]
+    d = -np.array([engine.function("generalized_forces")(0.0, y) - force for y in moved]).T
+    left, right = mass + h * d, h * (force - bias)
+    if engine.steps.has("multipliers"):
+        j = engine.function("constraint_jacobian")(0.0, state)
+        left = np.block([[left, -j.T], [j, np.zeros((len(j),) * 2)]])
+        right = np.concatenate([right, np.zeros(len(j))])
+    return np.linalg.solve(left, right)[:u]
+
+
+FORMULATIONS = ("multiplier", "nullspace", "minimal")
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_the_implicit_damping_is_that_of_the_equations(formulation):
+    steps, engine, _, state = damped(formulation)
+    h, n, u = 0.02, len(steps.program.coordinates), len(steps.program.speeds)
+    change = damped_change(engine, state, h)
+    free = h * engine.function("accelerations")(0.0, state)
+    assert np.abs(change - free).max() > 0.1 * np.abs(change).max()  # it matters
+    bits, after = called(engine, "semi_euler_damped", state, h)
+    assert bits & STOPPED == 0
+    rates = engine.function("state_derivative")(0.0, [*state[:n], *change])[:n]
+    wanted = state + np.concatenate([h * rates, change])
+    wanted, _ = steps_python.admissible(steps, engine.function, h, wanted)
+    np.testing.assert_allclose(after, wanted, atol=1e-12)
+    assert u == len(change)
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_the_damped_step_of_c_is_that_of_numpy(formulation):
+    steps, engine, given, state = damped(formulation)
+    both = [
+        integrate.run(e, METHODS["semi-euler-damped"], state, Grid(0.0, 0.02, 20)).states
+        for e in (engine, EnginePython(steps, given))
+    ]
+    np.testing.assert_allclose(both[0], both[1], rtol=1e-11, atol=1e-12)
+
+
+def damped_chain(count):
+    """Masses in a row, each damped to the one before."""
+    names = [f"x_{i}" for i in range(1, count + 1)]
+    gaps = [names[0], *(f"{b} - {a}" for a, b in zip(names, names[1:], strict=False))]
+    return "\n".join([
+        "eom: 1", "system: Damped chain", "space: line", "gravity: 0",
+        "parameters: {m: 1 kg, k: 30 N/m, d: 50 N*s/m}",
+        "coordinates: {" + ", ".join(f"{n}: m" for n in names) + "}",
+        "bodies:", *(f'  b{i}: {{mass: m, at: "[{n}]"}}' for i, n in enumerate(names)),
+        "springs:", *(f"  - {{along: {g}, stiffness: k}}" for g in gaps),
+        "dampers:", *(f"  - {{along: {g}, damping: d}}" for g in gaps),
+        "initial: {" + ", ".join(f"{n}: 0.1 m, {n}': 0 m/s" for n in names) + "}",
+    ])  # fmt: skip
+
+
+def test_a_long_chain_is_damped_by_a_loop():
+    """Beyond the size up to which M is factored unrolled."""
+    tool("cc")
+    steps = stepping.of(study.of_text(damped_chain(14), "chain.yaml"), ("semi-euler-damped",))
+    given = Arguments((), tuple(float(p.value) for p in steps.program.parameters))
+    engine, state = EngineC(steps, given), start(steps)
+    change = damped_change(engine, state, 0.02)
+    _, after = called(engine, "semi_euler_damped", state, 0.02)
+    np.testing.assert_allclose(after[14:], change, rtol=1e-10)
+    assert np.abs(change).max() > 0.01
+
+
+def test_damping_is_no_obstacle_to_the_step_where_it_is_implicit():
+    """A rate of 8000/s in the dampers of a linkage: at h = 0.01 the explicit step is lost."""
+    tool("cc")
+    steps = damped_steps("nullspace")
+    values = {p.name: float(p.value) for p in steps.program.parameters} | {"d": 2000.0}
+    engine = EngineC(steps, Arguments((), tuple(values.values())))
+    ends = {
+        name: integrate.run(engine, METHODS[name], start(steps), Grid(0.0, 0.01, 500))
+        for name in ("semi-euler", "semi-euler-damped")
+    }
+    assert ends["semi-euler"].stopped or np.abs(ends["semi-euler"].states[-1]).max() > 1e3
+    assert not ends["semi-euler-damped"].stopped
+    assert np.abs(ends["semi-euler-damped"].states[-1][3:]).max() < 1
+
+
+def test_forces_that_drive_are_not_called_damping():
+    text = DAMPED_FOUR_BAR.replace("d: 2 N*m*s", "d: -2 N*m*s")
+    with pytest.raises(UsageError, match=r"E-DAMP: .*\(they drive some motion instead"):
+        stepping.of(study.of_text(text, "scene.yaml"), ("semi-euler-damped",))

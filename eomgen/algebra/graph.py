@@ -369,7 +369,7 @@ def _integer_power(a: Node, exponent: int) -> Node:
     return result
 
 
-def _root(value: Fraction) -> Fraction | None:
+def exact_root(value: Fraction) -> Fraction | None:
     """The square root of a number, where it is rational."""
     if value < 0:
         return None
@@ -379,7 +379,7 @@ def _root(value: Fraction) -> Fraction | None:
 
 def sqrt(a: Node) -> Node:
     """The square root."""
-    root = _root(a.datum) if a.operator == "number" else None
+    root = exact_root(a.datum) if a.operator == "number" else None
     return unary("sqrt", a) if root is None else a.graph.number(root)
 
 

@@ -11,13 +11,14 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
-from eomgen.algebra import fixed
+from eomgen.algebra import cancellation, fixed, half_angles
 from eomgen.algebra.arithmetic import evaluate, mpmath_arithmetic
 from eomgen.algebra.assemble import assemble, written
 from eomgen.algebra.graph import Graph, Node, below
 from eomgen.algebra.ldl import SingularMassMatrix
 from eomgen.algebra.lift import Lifted, Target, lift
 from eomgen.algebra.lower import GraphAlgebra
+from eomgen.algebra.terms import Products
 from eomgen.errors import UsageError
 from eomgen.program import Expression, Function, Number, Program, Read, Variable
 
@@ -60,7 +61,12 @@ def target_of(program: Program, free: tuple[Variable, ...]) -> Target:
         for i, p in enumerate(program.parameters)
     }
     count = len(free)
-    build = fixed.builders(lambda node: not node.leaves >> count)
+    positive = [places[p.name] for p in free if p.value is not None and p.value.is_positive]
+
+    def is_fixed(node: Node) -> bool:
+        return not node.leaves >> count
+
+    build = cancellation.builders(fixed.builders(is_fixed), is_fixed, positive)
     return Target(graph, build, given)
 
 
@@ -73,7 +79,18 @@ def on_graph(function: Function, target: Target) -> Lifted:
             f"{function.name} divides by zero with the folded parameters; "
             "give them other values, or generate without --fold"
         ) from error
-    return replace(found, pivots=tuple(p for p in found.pivots if not _is_positive(p[0])))
+    pivots = tuple(p for p in found.pivots if not _is_positive(p[0]))
+    return _halved(replace(found, pivots=pivots), target)
+
+
+def _halved(found: Lifted, target: Target) -> Lifted:
+    """The function with half angles where these keep digits."""
+    nodes = [*found.results, *(n for pair in found.pivots for n in pair)]
+    made = half_angles.replaced(nodes, target.build, Products())
+    if made is None:
+        return found
+    pivots = tuple((made[a], made[b]) for a, b in found.pivots)
+    return replace(found, results=tuple(made[a] for a in found.results), pivots=pivots)
 
 
 def _is_positive(pivot: Node) -> bool:

@@ -277,7 +277,7 @@ def draw(
     first = positions(machine) if first is None else first
     linkage = linkages.of(machine)
     chance = random.Random(f"{seed} {linkage.model.name}")
-    boxes = _boxes(linkage, first.state)
+    boxes = boxes_of(linkage, first.state)
     drawn: list[Admissible] = []
     for attempt in range(TRIES * count):
         if len(drawn) == count:
@@ -295,8 +295,8 @@ def draw(
     return tuple(drawn)
 
 
-def _boxes(linkage: Linkage, state: State) -> list[Box]:
-    """Where each coordinate is drawn."""
+def boxes_of(linkage: Linkage, state: State) -> list[Box]:
+    """Where each coordinate is drawn: its range, else around the initial state."""
     boxes: list[Box] = []
     spread = reach(linkage, state)
     for c, value, size in zip(linkage.model.coordinates, state.coordinates, spread, strict=True):

@@ -15,8 +15,8 @@ from eomgen.errors import UsageError
 # Okabe and Ito: told apart by the colour-blind
 COLOURS = {"minimal": "#0072b2", "nullspace": "#d55e00", "multiplier": "#009e73"}
 MARKERS = {
-    "semi-euler": "v", "verlet": "^", "rk4": "o", "dopri5": "s", "rosenbrock2": "D",
-    "midpoint": "P",
+    "semi-euler": "v", "semi-euler-damped": "<", "verlet": "^", "rk4": "o", "dopri5": "s",
+    "rosenbrock2": "D", "midpoint": "P",
 }  # fmt: skip
 LINES = {"f64": "-", "f32": (0, (4, 2))}
 LEGEND = 7  # entries of a line

@@ -14,7 +14,8 @@ from eomgen.render.templating import environment, fill
 CSV = "chart.csv"
 COLUMNS = ("positions", "rates", "energy", "constraint")  # beside `PANELS`
 MARKS = {
-    "semi-euler": "triangle*, mark options={rotate=180}", "verlet": "triangle*", "rk4": "*",
+    "semi-euler": "triangle*, mark options={rotate=180}",
+    "semi-euler-damped": "triangle*, mark options={rotate=90}", "verlet": "triangle*", "rk4": "*",
     "dopri5": "square*", "rosenbrock2": "diamond*", "midpoint": "pentagon*",
 }  # fmt: skip
 JUDGED = 2  # panels that the target is drawn in

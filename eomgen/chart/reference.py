@@ -149,11 +149,10 @@ def trusted_horizon(variant: Variant, horizon: float, target: float) -> tuple[fl
                     limits=Tolerances(1e-11, 1e-13))  # fmt: skip
     one, other = motion_of(variant, choice, times), motion_of(near, choice, times)
     apart = np.max(np.abs(one.places - other.places) / one.scales[0], axis=1)
-    growth = float(np.max(apart)) / NUDGE
-    if growth < PARTED:
+    if np.max(apart) < PARTED * apart[0]:
         return horizon, ""
     place = int(np.argmax(apart >= SATURATED * np.max(apart)))  # then they only wander
-    rate = log(float(apart[place]) / NUDGE) / (times[place] - times[0])
+    rate = log(float(apart[place] / apart[0])) / (times[place] - times[0])
     trusted = log(target / DUST) / rate
     said = f"I-CHAOS: lambda = {rate:.2g}/s; comparisons valid to {trusted:.3g} s"
     return min(horizon, trusted), said

@@ -24,21 +24,22 @@ def obstacle(machine: Machine) -> str:
         return "the speeds are not the rates of the coordinates"
     matrix = [entry for row in machine.equations.mass_matrix for entry in row]
     for symbol in (*(c.symbol for c in machine.model.coordinates), TIME):
-        if _depends(machine, matrix, symbol):
+        if depends(machine, matrix, symbol):
             return f"M depends on {symbol}"
     pairs = zip(machine.equations.generalized_forces, machine.equations.bias, strict=True)
     loads = [force - bias for force, bias in pairs]
-    for name, symbol in zip(_rates(machine), speeds.symbols(machine.model), strict=True):
-        if _depends(machine, loads, symbol):
+    for name, symbol in zip(rates(machine), speeds.symbols(machine.model), strict=True):
+        if depends(machine, loads, symbol):
             return f"the forces depend on {name}"
     return ""
 
 
-def _rates(machine: Machine) -> list[str]:
+def rates(machine: Machine) -> list[str]:
+    """The names of the rates of the coordinates."""
     return [c.rate.name for c in machine.model.coordinates]
 
 
-def _depends(machine: Machine, nodes: Sequence[Node], symbol: sp.Symbol) -> bool:
+def depends(machine: Machine, nodes: Sequence[Node], symbol: sp.Symbol) -> bool:
     """Whether a derivative by the symbol is not zero: by its form, or else in 50 digits."""
     algebra = machine.kinematics.algebra
     slopes = [algebra.along(node, {symbol: algebra.number(1)}) for node in nodes]

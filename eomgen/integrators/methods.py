@@ -1,7 +1,8 @@
 """The methods that generated C can have: one row each.
 
-`semi-euler` and `verlet` are named by what they do with (q, u):
+`semi-euler`, its damped form and `verlet` are named by what they do with (q, u):
 semi-euler  u+ = u + h u'(q, u),  q+ = q + h q'(q, u+);
+semi-euler-damped  (M + h D) (u+ - u) = h (Q - bias),  q+ = q + h q'(q, u+),  D = -dQ/du;
 verlet      q_m = q + h/2 u,  u+ = u + h u'(q_m),  q+ = q_m + h/2 u+  (position form, one force);
 midpoint    of (q, p) where the momenta p = dT/du are canonical, else of the state.
 """
@@ -37,6 +38,12 @@ METHODS = {
     m.name: m
     for m in (
         Method("semi-euler", 1, "semi_euler", "semi-implicit Euler, one evaluation"),
+        Method(
+            "semi-euler-damped",
+            1,
+            "semi_euler_damped",
+            "semi-implicit Euler, implicit in the damping, one evaluation",
+        ),
         Method("verlet", 2, "verlet", "Stormer-Verlet in position form, one evaluation"),
         Method("rk4", 4, "explicit", "Runge-Kutta of order 4, four evaluations", RK4),
         Method("dopri5", 5, "explicit", "Dormand-Prince of order 5 at a fixed step", DOPRI5),

@@ -70,6 +70,10 @@ def _semi_euler(steps: Steps, method: Method) -> dict[str, int]:
     return {"accelerations": 1} | ({"rates": 1} if steps.has("rates") else {})
 
 
+def _semi_euler_damped(steps: Steps, method: Method) -> dict[str, int]:
+    return _semi_euler(steps, method) | {"damping_jacobian": 1}
+
+
 def _verlet(steps: Steps, method: Method) -> dict[str, int]:
     return {"accelerations": 1}
 
@@ -92,6 +96,7 @@ def _midpoint(steps: Steps, method: Method) -> dict[str, int]:
 CALLS = {
     "explicit": _explicit,
     "semi_euler": _semi_euler,
+    "semi_euler_damped": _semi_euler_damped,
     "verlet": _verlet,
     "rosenbrock": _rosenbrock,
     "midpoint": _midpoint,

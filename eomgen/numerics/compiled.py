@@ -64,6 +64,25 @@ class Compiled:
         self.library[f"{prefix(self.program.name)}_prepare"](_pointer(given, kind), memory)
         return memory
 
+    def each(
+        self, function: str, times: np.ndarray[Any, np.dtype[Any]], *rows: Any, model: Any
+    ) -> np.ndarray[Any, np.dtype[Any]]:
+        """The results (N, size) at many states, NaN where one fails; rows: (N, n) each, as `call`.
+
+        `model` is a prepared one.
+        """
+        kind = REALS[self.real]
+        given = [np.ascontiguousarray(r, kind) for r in rows]
+        results = np.full((len(times), len(self.program.function(function).results)), np.nan, kind)
+        symbol = self.library[f"{prefix(self.program.name)}_prepared_{function}"]
+        symbol.argtypes = [kind, *[ctypes.c_void_p] * (len(given) + 2)]
+        places = [(a.ctypes.data, a.strides[0]) for a in (*given, results)]
+        for k, time in enumerate(times):
+            *taken, result = (start + k * stride for start, stride in places)
+            if symbol(time, *taken, model, result) == SINGULAR:
+                results[k] = np.nan
+        return results
+
     def batch(
         self, function: str, t: float, *columns: np.ndarray[Any, np.dtype[Any]], model: Any
     ) -> tuple[np.ndarray[Any, np.dtype[Any]], int]:

@@ -21,6 +21,7 @@ from eomgen.numerics.records import (
     Function,
 )
 
+EULERS = ("semi_euler", "semi_euler_damped")  # their rates are a function where speeds are others
 LEAST_MARGIN = 1e-4  # of the pivots: below, positions are not projected
 TOLERANCE = 1e-9  # of constraints after a projection, and of Newton's last correction
 Call = Callable[[str], Function]
@@ -45,11 +46,8 @@ def _kind(steps: Steps, method: Method) -> str:
     """Which of `INCREMENTS` a method is for this program."""
     if method.kind == "midpoint" and steps.is_canonical:
         return "midpoint of momenta"
-    return (
-        "semi_euler of speeds"
-        if method.kind == "semi_euler" and steps.has("rates")
-        else method.kind
-    )
+    is_apart = method.kind in EULERS and steps.has("rates")
+    return f"{method.kind} of speeds" if is_apart else method.kind
 
 
 def admissible(steps: Steps, call: Call, t: float, state: Array) -> tuple[Array, int]:
@@ -88,10 +86,38 @@ def _semi_euler(method: Method, call: Call, t: float, h: float, y: Array) -> tup
 def _semi_euler_speeds(
     method: Method, call: Call, t: float, h: float, y: Array
 ) -> tuple[Array, int]:
-    change = h * call("accelerations")(t, y)
+    return _moved(call, t, h, y, h * call("accelerations")(t, y))
+
+
+def _moved(call: Call, t: float, h: float, y: Array, change: Array) -> tuple[Array, int]:
+    """The coordinates go on with the rates that the changed speeds give."""
     n = len(y) - len(change)
     trial = np.concatenate([y[:n], y[n:] + change])
     return np.concatenate([h * call("rates")(t, trial), change]), 0
+
+
+def _damped(call: Call, t: float, h: float, y: Array) -> Array:
+    """(1 + h M^-1 D)^-1 h u'."""
+    jacobian = call("damping_jacobian")(t, y)
+    try:
+        return np.linalg.solve(
+            np.eye(len(jacobian)) - h * jacobian, h * call("accelerations")(t, y)
+        )
+    except np.linalg.LinAlgError:
+        return np.full(len(jacobian), np.nan)
+
+
+def _semi_euler_damped(
+    method: Method, call: Call, t: float, h: float, y: Array
+) -> tuple[Array, int]:
+    change = _damped(call, t, h, y)
+    return np.concatenate([h * (y[len(change) :] + change), change]), 0
+
+
+def _semi_euler_damped_speeds(
+    method: Method, call: Call, t: float, h: float, y: Array
+) -> tuple[Array, int]:
+    return _moved(call, t, h, y, _damped(call, t, h, y))
 
 
 def _verlet(method: Method, call: Call, t: float, h: float, y: Array) -> tuple[Array, int]:
@@ -162,6 +188,8 @@ INCREMENTS: dict[str, Increment] = {
     "explicit": _explicit,
     "semi_euler": _semi_euler,
     "semi_euler of speeds": _semi_euler_speeds,
+    "semi_euler_damped": _semi_euler_damped,
+    "semi_euler_damped of speeds": _semi_euler_damped_speeds,
     "verlet": _verlet,
     "rosenbrock": _rosenbrock,
     "midpoint": _midpoint,

@@ -52,11 +52,30 @@ class Style:
 
 
 @dataclass(frozen=True)
+class Constant:
+    """A number that a header defines; a `truth` is 0 or 1, everything else is of its real type."""
+
+    name: str
+    value: str
+    about: str
+    truth: bool = False
+
+
+@dataclass(frozen=True)
+class Remarks:
+    """What is known of a scene beside its code: lines of a comment, and numbers to program with."""
+
+    lines: tuple[str, ...] = ()
+    constants: tuple[Constant, ...] = ()
+
+
+@dataclass(frozen=True)
 class Code:
     """A program and how it is written, the subject of the targets C and Python."""
 
     program: Program
     style: Style = Style()
+    remarks: Remarks = Remarks()  # of the C header
 
     @property
     def name(self) -> str:
@@ -161,6 +180,8 @@ def c(subject: Program | Code) -> dict[str, object]:
     prepared = () if prepare is None else prepare.body.results
     return context | {
         "prepared": tuple((constants[i].code, text) for i, text in prepared),
+        "remarks": code.remarks.lines,
+        "defined": code.remarks.constants,
         "fast_trig": code.style.fast_trig,
         "batch": code.style.batch,
         "waves": waves,

@@ -17,7 +17,7 @@ from eomgen.program import (
 )
 from eomgen.render.dialects import Dialect
 from eomgen.render.grouped import Groups, codes, groups
-from eomgen.render.lowered import Content
+from eomgen.render.lowered import Content, content, expressions
 from eomgen.render.names import escaped, prefix
 
 READ = (*ARGUMENTS, "constants")
@@ -82,6 +82,13 @@ def names_of(
         names[array] = f"{code}[{LANE}]"
         names |= {in_lane(array, k): f"{code}[{k}]" for k in range(lanes)}
     return names | {Read("time", 0): "t"}
+
+
+def variables(lowered: Function, program: Program, dialect: Dialect) -> dict[Expression | str, str]:
+    """The variable of everything that a lowered function reads or computes in a program's code."""
+    read = survey(content(expressions(lowered)))
+    reserved = dialect.reserved | own_names(program, lowered)
+    return names_of(lowered, read, components(program, dialect), reserved)
 
 
 def _arrays(function: Function) -> dict[str, int]:

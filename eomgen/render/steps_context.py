@@ -64,6 +64,7 @@ def c(steps: Steps) -> dict[str, object]:
         "guarded": steps.has("constraint_margin"),
         "residuals": steps.residuals,
         "implicit": bool(kinds & {"rosenbrock", "midpoint"}),
+        "damped": "semi_euler_damped" in kinds,
         "newton": "midpoint" in kinds,
         "iterations": MIDPOINT_ITERATIONS,
     }
@@ -128,9 +129,14 @@ def _midpoint_notes(steps: Steps) -> tuple[str, ...]:
     return (kept, f"{MIDPOINT_ITERATIONS} simplified Newton iterations.")
 
 
+def _damped_notes(steps: Steps) -> tuple[str, ...]:
+    return ("(M + h D) (u+ - u) = h (Q - bias), D = -dQ/du.", *_semi_euler_notes(steps))
+
+
 NOTES: dict[str, Callable[[Steps], tuple[str, ...]]] = {
     "explicit": lambda steps: (),
     "semi_euler": _semi_euler_notes,
+    "semi_euler_damped": _damped_notes,
     "verlet": lambda steps: ("Symplectic: M is constant, the forces depend on positions only.",),
     "rosenbrock": lambda steps: ("Linearly implicit, one factorisation.",),
     "midpoint": _midpoint_notes,

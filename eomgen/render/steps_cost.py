@@ -63,6 +63,11 @@ def _substituted(n: int) -> Counter[str]:
     return Counter(multiply=n * (n - 1), subtract=n * (n - 1), divide=n)
 
 
+def _damped_cost(steps: Steps, method: Method) -> Counter[str]:
+    n = len(steps.program.speeds)
+    return _semi_euler_cost(steps, method) + _factored(n) + _substituted(n)
+
+
 def _times(count: int, one: Counter[str]) -> Counter[str]:
     return Counter({operator: count * times for operator, times in one.items()})
 
@@ -82,6 +87,7 @@ def _midpoint_cost(steps: Steps, method: Method) -> Counter[str]:
 OWN: dict[str, Callable[[Steps, Method], Counter[str]]] = {
     "explicit": _explicit_cost,
     "semi_euler": _semi_euler_cost,
+    "semi_euler_damped": _damped_cost,
     "verlet": _verlet_cost,
     "rosenbrock": _rosenbrock_cost,
     "midpoint": _midpoint_cost,
@@ -107,6 +113,9 @@ def _named(function: Function) -> int:
 ARRAYS: dict[str, Callable[[Steps, Method], int]] = {
     "explicit": lambda steps, method: steps.size * (1 + len(method.table.b)),  # type: ignore[union-attr]
     "semi_euler": lambda steps, method: 3 * steps.size,
+    "semi_euler_damped": lambda steps, method: (
+        3 * steps.size + len(steps.program.speeds) * (len(steps.program.speeds) + 1)
+    ),
     "verlet": lambda steps, method: 2 * steps.size,
     "rosenbrock": lambda steps, method: steps.size * (steps.size + 4),
     "midpoint": lambda steps, method: steps.size * (steps.size + 6),

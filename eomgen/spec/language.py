@@ -212,7 +212,7 @@ INITIAL_VALUE = Either((QUANTITY, Items(QUANTITY, least=4, most=4)))  # four of 
 EQUILIBRIUM = Either((Table(QUANTITY), Items(Table(QUANTITY))))
 
 METHODS = (
-    "semi-euler", "verlet", "rk4", "dopri5", "rosenbrock2", "midpoint",
+    "semi-euler", "semi-euler-damped", "verlet", "rk4", "dopri5", "rosenbrock2", "midpoint",
     "dop853", "lsoda", "radau", "cvode",
 )  # fmt: skip
 FORMULATIONS = ("minimal", "nullspace", "multiplier")

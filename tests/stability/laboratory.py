@@ -9,7 +9,7 @@ from scenes import SHIPPED
 from tools import tool
 
 from eomgen import compile_flow, compile_steps, stepping, study
-from eomgen.formulation import choose
+from eomgen.formulation import Linked, choose
 from eomgen.integrators.methods import METHODS, Method
 from eomgen.integrators.steps import Steps
 from eomgen.integrators.tableaus import Tableau
@@ -110,19 +110,40 @@ def derived(text, formulation="auto", baumgarte=F(0)):
     return replace(found, links=links, program=links.program())
 
 
+def insisted(text, formulation):
+    """The study in a formulation that is refused for singular positions: as if there were none."""
+    found = studied(text)
+    scene = found.links.scene
+    freedom = replace(scene.report.freedom, singularities=())
+    blind = Linked(scene.machine, replace(scene.report, freedom=freedom))
+    links = replace(found.links, chosen=choose(blind, Wanted(formulation)))
+    return replace(found, links=links, program=links.program())
+
+
 @cache
-def stepped(text, formulation="auto", baumgarte=F(0), *, bare=False, compensated=False):
-    """Every method over a scene, Verlet too where it is not symplectic; bare: not projected."""
-    found = derived(text, formulation, baumgarte)
+def stepped(text, formulation="auto", baumgarte=F(0), **how):
+    """Every method over a scene, as `with_steps`."""
+    return with_steps(derived(text, formulation, baumgarte), **how)
+
+
+@cache
+def insisting(text, formulation):
+    """Every method over a scene in a formulation that it is refused."""
+    return with_steps(insisted(text, formulation))
+
+
+def with_steps(found, *, bare=False, compensated=False):
+    """Every method, Verlet too where it is not symplectic; bare: not projected."""
     scene = stepping.scene_of(found)
-    methods = [m for m in METHODS.values() if m.kind != "verlet"]
+    methods = [m for m in METHODS.values() if compile_steps.offers(scene, m)]
     extra = (*compile_steps.functions(scene, methods), *compile_flow.functions(scene.machine))
     program = stepping.extended(found.program, extra)
     if bare:
         kept = tuple(f for f in program.functions if f.name not in PROJECTIONS)
         program = replace(program, functions=kept)
     has_rates = all(s.name.endswith("'") for s in program.speeds)
-    wanted = [m for m in EVERY.values() if has_rates or m.kind != "verlet"]
+    offered = {m.kind for m in methods} | ({"verlet"} if has_rates else set())
+    wanted = [m for m in EVERY.values() if m.kind in offered]
     return Steps(program, tuple(wanted), compensated)
 
 

@@ -6,8 +6,9 @@ One mass on a spring, m = k = 1: omega = 1, so the step is h omega; c = 2 zeta.
 import numpy as np
 import pytest
 from laboratory import EVERY, OSCILLATOR, amplitude, engine, failed, run, start, stepped
-from measures import ENERGY, LIMITS, ZETAS, energy_change, measured_limit, semi_euler_implicit
-from theory import growth, largest_step
+from measures import ENERGY, LIMITS, ZETAS, energy_change, measured_limit
+
+from eomgen.stability.theory import Linear, growth, largest_step
 
 
 def oscillator(**parameters):
@@ -53,8 +54,11 @@ def test_row_5_damping_must_be_implicit_in_semi_euler():
     critical = oscillator(c=2.0)
     assert failed(run(critical, "semi-euler", began(), 0.85, 500))
     assert not failed(run(critical, "semi-euler", began(), 0.82, 500))
-    end = semi_euler_implicit(critical, began(), 0.85, 500)
-    assert np.abs(end).max() < 1e-20
+    assert not failed(run(critical, "semi-euler-damped", began(), 0.85, 500))
+    assert np.abs(run(critical, "semi-euler-damped", began(), 0.85, 500).states[-1]).max() < 1e-20
+    # its own limit is 2 (sqrt(1 + zeta^2) + zeta)
+    assert failed(run(critical, "semi-euler-damped", began(), 4.84, 5000))
+    assert not failed(run(critical, "semi-euler-damped", began(), 4.82, 5000))
 
 
 @pytest.mark.parametrize("zeta", ZETAS)
@@ -64,7 +68,7 @@ def test_limits_are_those_of_theory(method, zeta):
     matrix = np.array([[0.0, 1.0], [-1.0, -2 * zeta]])
     measured = measured_limit(method, zeta)
     if method in EVERY:
-        theory = largest_step(EVERY[method], matrix, 1)
+        theory = largest_step(EVERY[method], Linear(matrix, 1))
         assert measured == pytest.approx(theory, rel=1e-5, abs=0.01)
     assert measured == pytest.approx(LIMITS[method][ZETAS.index(zeta)], rel=0.006, abs=0.01)
 
@@ -75,11 +79,17 @@ def test_the_closed_formula_of_semi_euler():
         assert measured_limit("semi-euler", zeta) == pytest.approx(wanted, rel=1e-5)
 
 
+def test_the_closed_formula_of_damped_semi_euler():
+    for zeta in (0.0, 0.05, 0.3, 1.0):
+        wanted = 2 * (np.sqrt(1 + zeta**2) + zeta)
+        assert measured_limit("semi-euler-damped", zeta) == pytest.approx(wanted, rel=1e-5)
+
+
 @pytest.mark.parametrize("method", ["rosenbrock2", "midpoint"])
 @pytest.mark.parametrize("zeta", ZETAS)
 def test_implicit_methods_have_no_limit(method, zeta):
     matrix = np.array([[0.0, 1.0], [-1.0, -2 * zeta]])
-    assert largest_step(EVERY[method], matrix, 1) == np.inf
+    assert largest_step(EVERY[method], Linear(matrix, 1)) == np.inf
     assert not failed(run(oscillator(c=2 * zeta), method, began(), 100.0, 1000))
 
 
@@ -88,8 +98,8 @@ def test_a_motion_that_grows_by_itself_is_no_fault_of_the_step():
     matrix = np.zeros((4, 4))
     matrix[:2, 2:], matrix[2, 0], matrix[3, 1] = np.eye(2), 9.0, -16.0
     for method, limit in (("rk4", 2.828427), ("verlet", 2.0), ("semi-euler", 2.0)):
-        assert largest_step(EVERY[method], matrix, 2) == pytest.approx(limit / 4, rel=1e-4)
-        assert growth(EVERY[method], matrix, 2, 0.1) <= 1 + 1e-9
+        assert largest_step(EVERY[method], Linear(matrix, 2)) == pytest.approx(limit / 4, rel=1e-4)
+        assert growth(EVERY[method], Linear(matrix, 2), 0.1) <= 1 + 1e-9
 
 
 @pytest.mark.parametrize("method", ENERGY)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from laboratory import METHODS, SHIPPED, engine, failed, run, start, stepped
 from scipy.integrate import solve_ivp
-from theory import largest_step
+
+from eomgen.stability.theory import Linear, largest_step
 
 
 def governor():
@@ -18,7 +19,7 @@ def test_row_21_explicit_steps_are_limited_by_the_damper():
     scene, state = governor()
     matrix = scene.function("state_jacobian")(0.0, state)
     fastest = np.abs(np.linalg.eigvals(matrix)).max()
-    limit = largest_step(METHODS["rk4"], matrix, 4)
+    limit = largest_step(METHODS["rk4"], Linear(matrix, 4))
     assert limit == pytest.approx(2.785 / fastest, rel=1e-3)
     assert failed(run(scene, "rk4", state, 1.1 * limit, 2000))
     assert not failed(run(scene, "rk4", state, 0.9 * limit, 2000))

@@ -1,0 +1,1 @@
+"""How exact the shipped code is: in float and double against fifty digits at many states."""
