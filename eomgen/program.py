@@ -98,9 +98,9 @@ class Solve:
 class Alike:
     """The same assignments once for each of `lanes` limbs that are built alike.
 
-    given: names that the assignments read, each with what it stands for lane by lane; kept: those
-    of their own names that statements behind may read, of one lane as `in_lane(name, lane)` or,
-    in later `Alike` of as many lanes, of each lane as `name`.
+    given: names that the assignments, and later ones of this kind, read, each with what it stands
+    for lane by lane; kept: those of their own names that statements behind may read, of one lane
+    as `in_lane(name, lane)` or, in later `Alike`, of each lane as `name`. All have as many lanes.
     """
 
     lanes: int

@@ -248,6 +248,38 @@ def in_motion():
     )
 
 
+def limbs(count=4):
+    """Masses on springs that hang on one point, alike but for their numbers: pivots in lanes."""
+    q, u = ([Read("state", start + i) for i in range(count)] for start in (0, count))
+    k, m = ([Read("parameters", start + i) for i in range(count)] for start in (0, count))
+    inertias = [add(mul(m[i], op("cos", q[i])), mul(q[i], q[i])) for i in range(count)]
+    forces = [sub(mul(mul(k[i], q[i]), u[i]), div(op("sin", q[i]), k[i])) for i in range(count)]
+    total = Value("f0")
+    for i in range(1, count):
+        total = add(total, Value(f"f{i}"))
+    statements = (
+        *(Assign(f"m{i}", inertias[i]) for i in range(count)),
+        *(RequirePositive(Value(f"m{i}"), add(m[i], mul(k[i], q[i]))) for i in range(count)),
+        *(Assign(f"f{i}", forces[i]) for i in range(count)),
+        Assign("total", total),
+    )
+    share = mul(Value("total"), Read("parameters", 2 * count))
+    moved = [div(sub(Value(f"f{i}"), share), Value(f"m{i}")) for i in range(count)]
+    swung = [mul(sub(moved[i], u[i]), add(op("sqrt", mul(q[i], m[i])), u[i])) for i in range(count)]
+    return program(
+        "limbs",
+        (Function("accelerations", "u'", (count + 1,), statements, (*swung, Value("total"))),),
+        coordinates=tuple(Variable(f"q{i}") for i in range(count)),
+        speeds=tuple(Variable(f"q{i}'") for i in range(count)),
+        parameters=tuple(
+            Variable(f"{name}{i}", "", "", sp.Rational(i + start, 7))
+            for name, start in (("k", 2), ("m", 9))
+            for i in range(count)
+        )
+        + (Variable("g", "", "", sp.Rational(3)),),
+    )
+
+
 PROGRAMS = {
     p.name: p
     for p in (
@@ -258,6 +290,7 @@ PROGRAMS = {
         open_parameters(),
         chain(),
         in_motion(),
+        limbs(),
     )
 }
 

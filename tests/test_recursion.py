@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from scenes import EXTRA, SHIPPED, model_of
-from trees import PLANAR, spatial
+from trees import BALL, PARALLEL, PLANAR, arm, spatial
 
 from eomgen import compile, study
 from eomgen.algebra import cost
@@ -21,7 +21,8 @@ from eomgen.mechanics.recursive.records import NoTree, PlanarFrame, Point
 from eomgen.spec import read
 
 SEEDS = range(8)
-RANDOM = {f"random_{seed}": spatial(seed) for seed in SEEDS} | {"planar": PLANAR}
+RANDOM = {f"random_{seed}": spatial(seed) for seed in SEEDS}
+RANDOM |= {"planar": PLANAR, "ball": BALL, "parallel": arm(6, PARALLEL)}
 
 
 @cache
@@ -176,21 +177,13 @@ def test_a_coordinate_that_moves_nothing_has_no_tree():
     assert str(machine.tree) == "no body moves with idle"
 
 
-def arm(count):
-    """A chain in space: skew axes, full inertias."""
-    lines = [
-        "eom: 1", f"system: Chain of {count}", "space: solid", "gravity: [0, 0, -9.81]",
-        "coordinates:", *(f"  q{i}: 1" for i in range(count)),
-        "bodies:",
-    ]  # fmt: skip
-    axes = ("[1, 2, 2]", "y", "[2, -1, 2]", "z")
-    for i in range(count):
-        on = f"on: B{i - 1}, at: [0.1, 0.02, 0.3], " if i else ""
-        lines.append(
-            f"  B{i}: {{mass: {1 + i / 100}, inertia: [0.05, 0.06, 0.04, 0.01, -0.005, 0.008], "
-            f"com: [0.02, -0.03, 0.15], frame: {{{on}turn: [[{axes[i % 4]}, q{i}]]}}}}"
-        )
-    return "\n".join(lines) + "\n"
+def test_skew_axes_cost_less_than_half_as_much_again():
+    """The body axes are free: z along the joint, x across it and the next one."""
+    skew, straight = (
+        compile.machine_of(read(arm(6, axes), "arm.yaml")).engine.cost.operations
+        for axes in (("[1, 2, 2]", "[2, -1, 2]", "[2, 3, 6]"), ("z", "y", "x"))
+    )
+    assert skew < 1.5 * straight
 
 
 @cache

@@ -27,8 +27,9 @@ STYLES = {
     "prepared": lambda program: coded(program, Style(fast_trig=True, batch=True)),
     "folded": lambda program: coded(program, Style(fold=True, batch=True)),
     "in parts": lambda program: coded(program, Style(fast_trig=True, batch=True, longest=3)),
+    "in loops": lambda program: coded(program, Style(longest=3)),
 }
-SLOW = ("folded", "in parts")
+SLOW = ("folded", "in parts", "in loops")
 styled = pytest.mark.parametrize(
     "style", [pytest.param(s, marks=pytest.mark.slow if s in SLOW else ()) for s in STYLES]
 )

@@ -42,9 +42,12 @@ def spatial(seed, count=6):
     ]
     lines = [
         "eom: 1", f"system: Random tree {seed}", "space: solid", "gravity: [0.3, -1, -9.7]",
-        "coordinates:", *(f"  {q}: 1" for q in coordinates),
+        "coordinates:", *(f"  {q}: 1" for q in (*coordinates, "swing")),
         "prescribed: {w: 0.3*sin(2*t)}", "inputs: {tau: 1, F: 1}",
-        "bodies:", *bodies, "springs:", *springs, "moments:", *moments, "forces:", *forces,
+        f"points: {{T: {{on: B{count // 2}, at: [0.2, -0.1, 0.3 + 0.1*q0]}}}}",
+        "bodies:", *bodies, "  nut: {mass: 0.4, at: T}",
+        '  bob: {mass: 0.7, at: "T + 0.4*[sin(swing), 0.2, -cos(swing)]"}', "springs:", *springs,
+        "moments:", *moments, "forces:", *forces,
         "dampers:", f"  - {{between: [B0, B{count - 1}], damping: 0.4}}",
     ]  # fmt: skip
     return "\n".join(lines) + "\n"
@@ -52,7 +55,7 @@ def spatial(seed, count=6):
 
 def axis(chance):
     """A skew axis; a length that is no rational number now and then."""
-    return chance.choice(["[1, 2, 2]", "[2, -1, 2]", "[1, 1, 0]", "[1, -2, 3]", "x", "[0, 0, -1]"])
+    return chance.choice(["[1, 2, 2]", "[2, -1, 2]", "[1, 1, 0]", "[1, -2, -3]", "x", "[0, 0, -1]"])
 
 
 def inertia(chance):
@@ -61,6 +64,25 @@ def inertia(chance):
     return ", ".join([*main, *(f"{chance.uniform(-0.1, 0.1):.2f}" for _ in range(3))])
 
 
+BALL = """\
+eom: 1
+system: A ball joint between two skew axes
+space: solid
+gravity: [0.3, -1, -9.7]
+coordinates: {a: 1, b: 1, e: quaternion}
+inputs: {tau: 1}
+bodies:
+  arm: {mass: 2, inertia: [0.3, 0.4, 0.5, 0.01, 0.02, 0],
+        com: [0.1, 0, 0.2], frame: {at: [0, 0, 0], turn: [[[2, 1, -2], a]]}}
+  ball: {mass: 1, inertia: [0.3, 0.4, 0.5, 0, 0.05, 0.01],
+         com: [0, 0.1, 0.2],
+         frame: {on: arm, at: [0.3, 0.1, 0], turn: [{quaternion: e}]}}
+  tip: {mass: 1, inertia: [0.2, 0.3, 0.4, 0.02, 0, 0.01],
+        com: [0.1, 0.1, 0], frame: {on: ball, at: [0, 0.3, 0.1], turn: [[[1, 2, 2], b]]}}
+moments:
+  - {on: ball, from: arm, in: arm, moment: [tau, 2*tau, 0.3]}
+  - {on: tip, from: ball, in: tip, moment: [tau, 0, tau]}
+"""
 PLANAR = """\
 eom: 1
 system: Planar tree of every kind
@@ -96,3 +118,22 @@ moments:
 forces:
   - {on: end, from: cart, force: [1, 0.2]}
 """
+
+
+PARALLEL = ("[1, 2, 2]", "[1, 2, 2]", "[-1, -2, -2]", "[1, 1, 3]", "[1, 1, 3]", "[3, 0, -1]")
+
+
+def arm(count, axes=("[1, 2, 2]", "y", "[2, -1, 2]", "z")):
+    """A chain in space: skew axes, full inertias."""
+    lines = [
+        "eom: 1", f"system: Chain of {count}", "space: solid", "gravity: [0, 0, -9.81]",
+        "coordinates:", *(f"  q{i}: 1" for i in range(count)),
+        "bodies:",
+    ]  # fmt: skip
+    for i in range(count):
+        on = f"on: B{i - 1}, at: [0.1, 0.02, 0.3], " if i else ""
+        lines.append(
+            f"  B{i}: {{mass: {1 + i / 100}, inertia: [0.05, 0.06, 0.04, 0.01, -0.005, 0.008], "
+            f"com: [0.02, -0.03, 0.15], frame: {{{on}turn: [[{axes[i % len(axes)]}, q{i}]]}}}}"
+        )
+    return "\n".join(lines) + "\n"

@@ -8,15 +8,16 @@ PLDI 2000; here rows are grown from the results down to the leaves).
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
 from eomgen.algebra.graph import Node, below
 
-SIDE_BY_SIDE = frozenset(("add", "subtract", "multiply", "divide", "negate", "sqrt"))
+# what compilers do for several lanes at once: a root may set errno, a sine is a call
+SIDE_BY_SIDE = frozenset(("add", "subtract", "multiply", "divide", "negate"))
 COMMUTATIVE = frozenset(("add", "multiply"))
-WIDTHS = (4, 8)  # lanes that fill the registers of a processor
+WIDEST = 16  # lanes
 LEAST_SHARE = 0.25  # of all operations, saved by rows: with fewer it does not pay to move data
 
 Row = tuple[Node, ...]
@@ -51,7 +52,7 @@ def rows_of(results: Sequence[Node], others: Sequence[Node], fixed: Fixed) -> Ro
     nodes = below([*results, *others], stop=fixed)
     shapes = _Shapes.of(nodes, fixed)
     best, most = None, LEAST_SHARE * sum(1 for n in nodes if n.operands and not fixed(n))
-    for width in WIDTHS:
+    for width in _widths(results, shapes):
         search = _Search(width, shapes, fixed)
         search.grow_from_results(results)
         if search.operands:
@@ -63,6 +64,12 @@ def rows_of(results: Sequence[Node], others: Sequence[Node], fixed: Fixed) -> Ro
         return None
     phases = _phases(nodes, best, shapes)
     return Rows(best.width, best.home, best.operands, phases)
+
+
+def _widths(results: Sequence[Node], shapes: _Shapes) -> list[int]:
+    """How many results are alike."""
+    sizes = Counter(shapes.number[n] for n in dict.fromkeys(results)).values()
+    return sorted(size for size in set(sizes) if 2 <= size <= WIDEST)
 
 
 @dataclass(frozen=True)

@@ -34,15 +34,12 @@ def side_by_side(program: Program, folded: Collection[str], longest: int) -> Pro
         UsageError, SingularMassMatrix: as `specialised`.
     """
     found = _found(program, longest) if len(folded) in (0, len(program.parameters)) else []
-    if not any(each.rows for each in found):
+    if not found or (folded and not any(each.rows for each in found)):
         return specialised(program, folded)
     constants = _constants(found, len(program.parameters), bool(folded))
-    prepare = assemble("prepare", ABOUT, (len(constants),), constants)
     if not folded:
-        given = {a: Read("constants", i) for i, a in enumerate(constants)}
-        functions = tuple(_function(each, given) for each in found)
-        return replace(program, functions=functions, prepare=prepare if constants else None)
-    numbers = _numbers(program, prepare, constants)
+        return _prepared(program, found, constants)
+    numbers = _numbers(program, constants)
     functions = tuple(_function(_open(each, numbers), numbers) for each in found)
     numbered = program.folded + program.parameters
     return replace(program, parameters=(), functions=functions, folded=numbered)
@@ -94,10 +91,19 @@ def _constants(found: Sequence[_Found], free: int, every: bool) -> list[Node]:
     return [a for a in both if is_fixed(a, free) and a.operator != "number"]
 
 
-def _numbers(
-    program: Program, prepare: Function, constants: Sequence[Node]
-) -> Mapping[Node, Expression]:
+def _prepared(program: Program, found: Sequence[_Found], fixed: Sequence[Node]) -> Program:
+    """Functions that read the constants of `prepare`, and numbers that need no parameter."""
+    constants = [a for a in fixed if a.leaves]
+    given: dict[Node, Expression] = {a: Number(literal(a)) for a in fixed if not a.leaves}
+    given |= {a: Read("constants", i) for i, a in enumerate(constants)}
+    functions = tuple(_function(each, given) for each in found)
+    prepare = assemble("prepare", ABOUT, (len(constants),), constants) if constants else None
+    return replace(program, functions=functions, prepare=prepare)
+
+
+def _numbers(program: Program, constants: Sequence[Node]) -> dict[Node, Expression]:
     """What the constants are with the values of the spec."""
+    prepare = assemble("prepare", ABOUT, (len(constants),), constants)
     values = lift(prepare, target_of(program, ())).results
     return {a: Number(literal(v)) for a, v in zip(constants, values, strict=True)}
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
@@ -12,27 +13,28 @@ def unrolled(function: Function) -> Function:
     """The same function without `Alike`."""
     if not any(isinstance(s, Alike) for s in function.statements):
         return function
-    laned: set[str] = set()
+    lanes: dict[int, dict[str, Expression]] = defaultdict(dict)
     statements: list[Statement] = []
     for statement in function.statements:
         if isinstance(statement, Alike):
-            laned.update(s.name for s in statement.statements)
-            statements.extend(_lanes(statement, laned))
+            statements.extend(_lanes(statement, lanes))
         else:
             statements.append(statement)
     return replace(function, statements=tuple(statements))
 
 
-def _lanes(alike: Alike, laned: set[str]) -> Iterator[Assign]:
-    """The assignments of every lane."""
+def _lanes(alike: Alike, lanes: Mapping[int, dict[str, Expression]]) -> Iterator[Assign]:
+    """The assignments of every lane; `lanes`: what names stand for, which they add to."""
     for lane in range(alike.lanes):
-        known: dict[str, Expression] = {name: Value(in_lane(name, lane)) for name in laned}
-        known |= {name: entries[lane] for name, entries in alike.given}
+        known = lanes[lane]
+        known.update((name, entries[lane]) for name, entries in alike.given)
+        known.update((s.name, Value(in_lane(s.name, lane))) for s in alike.statements)
         for s in alike.statements:
             yield Assign(in_lane(s.name, lane), _renamed(s.expression, known))
 
 
 def _renamed(expression: Expression, known: Mapping[str, Expression]) -> Expression:
+    """The expression with names of a lane as what they stand for."""
     match expression:
         case Value(name):
             return known.get(name, expression)

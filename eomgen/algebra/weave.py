@@ -20,6 +20,7 @@ class _Draft:
     rows: Rows
     known: dict[Node, Expression]  # fixed values, and those that cross from phase to phase
     kept: dict[Row, str] = field(default_factory=dict)  # rows that cross
+    given: dict[tuple[Expression, ...], str] = field(default_factory=dict)  # what loops read
     statements: list[Statement] = field(default_factory=list)
     names: int = 0
 
@@ -86,7 +87,7 @@ def _scalars(draft: _Draft, wanted: Sequence[Node]) -> None:
 
 def _loop(draft: _Draft, wanted: Sequence[Row]) -> None:
     """One loop that computes rows of one phase."""
-    body = _Body(draft)
+    body, before = _Body(draft), len(draft.given)
     roots = [body.node(row) for row in wanted]
     made = written(draft.head, roots, (), body.leaves, draft.names)
     draft.names += len(made.statements)
@@ -99,7 +100,7 @@ def _loop(draft: _Draft, wanted: Sequence[Row]) -> None:
         draft.kept[row] = value.name
         draft.known |= {n: Value(in_lane(value.name, k)) for k, n in enumerate(row)}
     inside = tuple(s for s in statements if isinstance(s, Assign))
-    given = tuple((name, pack) for pack, name in body.given.items())
+    given = tuple((name, pack) for pack, name in list(draft.given.items())[before:])
     kept = tuple(dict.fromkeys(names))
     draft.statements.append(Alike(draft.rows.width, given, inside, kept))
 
@@ -112,7 +113,6 @@ class _Body:
     graph: Graph = field(default_factory=Graph)
     nodes: dict[Row, Node] = field(default_factory=dict)
     leaves: dict[Node, Expression] = field(default_factory=dict)
-    given: dict[tuple[Expression, ...], str] = field(default_factory=dict)
 
     def node(self, row: Row) -> Node:
         """The node of a row, its operands first."""
@@ -150,7 +150,8 @@ class _Body:
         entries = tuple(Number(n.datum) if n.operator == "number" else known[n] for n in row)
         if len(set(entries)) == 1:
             return entries[0]
-        if entries not in self.given:
-            self.given[entries] = f"v{self.draft.names}"
+        given = self.draft.given
+        if entries not in given:
+            given[entries] = f"v{self.draft.names}"
             self.draft.names += 1
-        return Value(self.given[entries])
+        return Value(given[entries])

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
 
-from eomgen.program import Alike, Expression, Function, Program, Read, Statement, Value
+from eomgen.program import Alike, Expression, Statement, Value
 from eomgen.render.lowered import Content, Lowered, content, defined, merged
 
 Slots = tuple[tuple[Expression, int], ...]
@@ -39,30 +39,6 @@ def whole(lowered: Lowered) -> Part:
     function = lowered.function
     stores = tuple((e, i) for i, e in enumerate(function.results))
     return Part(function.statements, (), stores, lowered.content)
-
-
-def base_of(function: Function, program: Program) -> Function | None:
-    """An earlier function of the same statements whose results come last, behind arguments."""
-    for other in program.functions:
-        if other.name == function.name:
-            return None
-        ahead = len(function.results) - len(other.results)
-        if (
-            ahead >= 0
-            and other.arguments == function.arguments
-            and other.results == function.results[ahead:]
-            and all(isinstance(e, Read) for e in function.results[:ahead])
-            and other.statements == function.statements
-        ):
-            return other
-    return None
-
-
-def lead(function: Function, base: Function | None) -> Part:
-    """The results that stand before those of the base; none without one."""
-    ahead = 0 if base is None else len(function.results) - len(base.results)
-    ours = function.results[:ahead]
-    return Part((), (), tuple((e, i) for i, e in enumerate(ours)), content(ours))
 
 
 def divided(lowered: Lowered, limit: int) -> Divided | None:

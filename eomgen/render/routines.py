@@ -27,7 +27,7 @@ from eomgen.render.dialects import Dialect
 from eomgen.render.grouped import apart
 from eomgen.render.lowered import content, lowered, operations, surveyed
 from eomgen.render.naming import LANE, Components, Survey, names_of, own_names, survey
-from eomgen.render.parts import Part, base_of, divided, lead, whole
+from eomgen.render.parts import Part, divided, whole
 
 COUNTED = {"add": "+", "subtract": "-", "negate": "-", "multiply": "*", "divide": "/"}
 ROWS = ("state", "accelerations", "inputs")  # what differs between the states of a batch
@@ -160,14 +160,13 @@ def routine(function: Function, program: Program, dialect: Dialect, given: Compo
     names |= {name: f"m->c{first}[{LANE}]" for name, first in direct.items()}
     text = _Text(dialect, names, given)
     cut = divided(found, dialect.longest)
+    base = None if cut is None else _base(function, program)
     parts = (everything,) if cut is None else cut.parts
-    base = None if cut is None else base_of(function, program)
-    own = everything if cut is None else lead(function, base)
     return Routine(
         function.name,
         function.about,
         function.shape,
-        text.body(own, survey(own.content) if cut else read),
+        text.body(everything, read) if cut is None else _lead(text, function, base, read),
         () if cut is None or base else tuple(text.body(p, survey(p.content)) for p in parts),
         tuple(map(text.lanes, parts)) if dialect.lanes else (),
         0 if cut is None else cut.slots,
@@ -179,6 +178,35 @@ def routine(function: Function, program: Program, dialect: Dialect, given: Compo
         _checks_pivots(function),
         "" if base is None else base.name,
     )
+
+
+def _base(function: Function, program: Program) -> Function | None:
+    """An earlier function of the same statements whose results come last, behind arguments."""
+    for other in program.functions:
+        if other.name == function.name:
+            return None
+        ahead = _ahead(function, other)
+        if (
+            other.arguments == function.arguments
+            and other.results == function.results[ahead:]
+            and all(isinstance(e, Read) for e in function.results[:ahead])
+            and other.statements == function.statements
+        ):
+            return other
+    return None
+
+
+def _ahead(function: Function, base: Function | None) -> int:
+    """How many results stand before those of the base."""
+    return 0 if base is None else max(0, len(function.results) - len(base.results))
+
+
+def _lead(text: _Text, function: Function, base: Function | None, read: Survey) -> Body:
+    """What stands beside the parts: the results before those of the base."""
+    results = function.results[: _ahead(function, base)]
+    stores = tuple((e, i) for i, e in enumerate(results))
+    part = Part((), (), stores, content(results))
+    return replace(text.body(part, survey(part.content)), uses=read.used)
 
 
 def _checks_pivots(function: Function) -> bool:

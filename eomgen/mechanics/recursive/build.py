@@ -23,7 +23,7 @@ from eomgen.mechanics.recursive.records import (
 )
 from eomgen.mechanics.recursive.rigid import Rigid
 from eomgen.mechanics.recursive.steps import Flat
-from eomgen.mechanics.vectors import Vector, add, cross, dot, scale
+from eomgen.mechanics.vectors import Vector, add, cross, dot, scale, transpose
 from eomgen.model import Body
 from eomgen.program import Read
 
@@ -43,7 +43,8 @@ def tree_of(kinematics: Kinematics[Node]) -> Tree:
     names = speeds.names(kinematics.model)
     gravity = kinematics.vector(kinematics.model.gravity)
     places, frames = settled(draft)
-    return Tree(tuple(places), joints(places, names), gravity, frames)
+    turned = {n: draft.turned[i] for n, i in draft.frames.items() if i in draft.turned}
+    return Tree(tuple(places), joints(places, names), gravity, frames, turned)
 
 
 def _refuse(kinematics: Kinematics[Node]) -> None:
@@ -77,13 +78,13 @@ def _load(draft: Draft, space: ModuleType, body: Body) -> None:
         draft.load(space.point(draft, body.name), inertia.particle(mass, dimensions))
         return
     offset = draft.clock.moving(com.components)
-    tensor = _tensor(draft, body)
+    tensor = _tensor(draft, body, frame)
     if com.points or not offset.is_still:
         draft.load(space.point(draft, body.name), inertia.particle(mass, dimensions))
         none = inertia.nothing(draft.zero, dimensions)
         draft.load(frame, Rigid(none.mass, none.first, tensor))
         return
-    draft.load(frame, inertia.about_origin(mass, offset.values, tensor))
+    draft.load(frame, inertia.about_origin(mass, draft.own(frame, offset.values), tensor))
 
 
 def _is_plain(draft: Draft, body: Body) -> bool:
@@ -93,14 +94,16 @@ def _is_plain(draft: Draft, body: Body) -> bool:
     return draft.words.is_at_origin(body.name) and body.name not in draft.words.carriers
 
 
-def _tensor(draft: Draft, body: Body) -> tuple[tuple[Node, ...], ...]:
+def _tensor(draft: Draft, body: Body, frame: int) -> tuple[tuple[Node, ...], ...]:
     size = 1 if draft.kinematics.dimensions == 2 else 3
     if not body.inertia:
         return inertia.particle(draft.zero, draft.kinematics.dimensions).second
     entries = draft.kinematics.vector(body.inertia)
     if any(draft.clock.moved_by(e) for e in entries):
         raise NoTree(f"the inertia of {body.name} moves")
-    return tuple(tuple(entries[size * i : size * i + size]) for i in range(size))
+    tensor = tuple(tuple(entries[size * i : size * i + size]) for i in range(size))
+    turned = draft.turned.get(frame)
+    return tensor if turned is None else inertia.turned_tensor(tensor, transpose(turned))
 
 
 def _load_rod(draft: Draft, body: Body, mass: Node, centre: int) -> None:

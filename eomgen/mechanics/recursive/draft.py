@@ -20,7 +20,7 @@ from eomgen.mechanics.recursive.records import (
 )
 from eomgen.mechanics.recursive.rigid import Rigid
 from eomgen.mechanics.recursive.steps import forward
-from eomgen.mechanics.vectors import Vector, add
+from eomgen.mechanics.vectors import Matrix, Vector, add, transform, transpose
 
 
 @dataclass
@@ -33,6 +33,8 @@ class Draft:
     places: list[Place] = field(default_factory=list)
     points: dict[str, int] = field(default_factory=dict)
     frames: dict[str, int] = field(default_factory=dict)
+    turned: dict[int, Matrix[Node]] = field(default_factory=dict)  # own axes in those of the body
+    ahead: dict[str, Vector[Node]] = field(default_factory=dict)  # axes of bodies to come
     turned_as: dict[int, str] = field(default_factory=dict)  # place -> the body whose axes it has
 
     @property
@@ -48,6 +50,11 @@ class Draft:
         """The angular velocity of a place that is a frame; none of a point."""
         kind = self.kind(place)
         return kind.spin if isinstance(kind, PlanarFrame | SpatialFrame) else ()
+
+    def own(self, place: int, vector: Vector[Node]) -> Vector[Node]:
+        """A vector in a body's axes, in the axes of its place."""
+        turned = self.turned.get(place)
+        return vector if turned is None else transform(transpose(turned), vector)
 
     def put(self, place: Place) -> int:
         """The number of a new place."""

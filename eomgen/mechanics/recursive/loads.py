@@ -114,5 +114,7 @@ def _wrench(kinematics: Kinematics[Node], tree: Tree, moment: Moment, name: str)
     if kinematics.dimensions == 3 and moment.axes != name:
         world = kinematics.to_world(vector, moment.axes)
         vector = transform(transpose(kinematics.axes(name)), world)
+    if name in tree.turned:
+        vector = transform(transpose(tree.turned[name]), vector)
     size = tree.places[tree.frames[name]].kind.size
     return (*vector, *(zero,) * (size - len(vector)))

@@ -21,7 +21,7 @@ from eomgen.mechanics.recursive.records import (
     Tree,
 )
 from eomgen.mechanics.recursive.rigid import PAIRS, Rigid
-from eomgen.mechanics.recursive.steps import Flat, Rotation, Shift, Step, Turn
+from eomgen.mechanics.recursive.steps import Flat, Rotation, Shift, SkewTurn, Step, Turn
 
 Split = tuple[Rigid, Rigid]  # what moves to the base, in the base's axes, and what stays
 
@@ -66,6 +66,7 @@ def _planar(place: Place, base: Place, body: Rigid) -> Split | None:
 
 def _spatial(steps: Sequence[Step], body: Rigid) -> Split | None:
     """Through the one run of turns, or the one sliding step, that moves."""
+    steps = [s for each in steps for s in _apart(each)]
     moving = [i for i, step in enumerate(steps) if _moves(step)]
     parts = _parts(steps, moving, body)
     if parts is None:
@@ -78,6 +79,10 @@ def _spatial(steps: Sequence[Step], body: Rigid) -> Split | None:
                 return None
             moved = before
     return moved, kept
+
+
+def _apart(step: Step) -> tuple[Step, ...]:
+    return (step.still, step.turn) if isinstance(step, SkewTurn) else (step,)
 
 
 def _moves(step: Step) -> bool:

@@ -155,6 +155,7 @@ class Tree:
     joints: tuple[Joint, ...]
     gravity: Vector[Node]  # world axes, [m/s^2]
     frames: Mapping[str, int] = field(default_factory=dict)  # body -> the place of its axes
+    turned: Mapping[str, Matrix[Node]] = field(default_factory=dict)  # the place's in the body's
 
     @property
     def order(self) -> tuple[int, ...]:

@@ -63,9 +63,14 @@ def shifted(body: Rigid, arm: Vector[Node]) -> Rigid:
 
 def rotated(body: Rigid, matrix: Matrix[Node]) -> Rigid:
     """In other axes, of which the columns of `matrix` are the old ones: R h, R J R'."""
-    second = compose(compose(matrix, body.second), transposed(matrix))
-    rows = tuple(tuple(second[max(i, j)][min(i, j)] for j in range(3)) for i in range(3))
-    return Rigid(body.mass, transform(matrix, body.first), rows)
+    second = turned_tensor(body.second, matrix)
+    return Rigid(body.mass, transform(matrix, body.first), second)
+
+
+def turned_tensor(tensor: Matrix[Node], matrix: Matrix[Node]) -> Matrix[Node]:
+    """R J R', each entry of the symmetric result once."""
+    second = compose(compose(matrix, tensor), transposed(matrix))
+    return tuple(tuple(second[max(i, j)][min(i, j)] for j in range(3)) for i in range(3))
 
 
 def wrench(body: Rigid, spin: Vector[Node], acceleration: Vector[Node]) -> Vector[Node]:

@@ -5,14 +5,28 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from eomgen.algebra.elementary import BUILD
 from eomgen.algebra.graph import Node
 from eomgen.mechanics import rotation
 from eomgen.mechanics.recursive.draft import Draft
 from eomgen.mechanics.recursive.formulas import Moving
 from eomgen.mechanics.recursive.places import Hung
 from eomgen.mechanics.recursive.records import GROUND, NoTree, Place, Point, SpatialFrame
-from eomgen.mechanics.recursive.steps import Flat, FreeRotation, Rotation, Shift, Step, Turn
-from eomgen.mechanics.vectors import Matrix, Vector, add, scale, transform, transpose
+from eomgen.mechanics.recursive.steps import (
+    Flat,
+    FreeRotation,
+    Motion,
+    Rotation,
+    Shift,
+    SkewTurn,
+    Step,
+    Turn,
+    advanced,
+    turned,
+    turned_askew,
+)
+from eomgen.mechanics.recursive.upright import Upright, towards, upright
+from eomgen.mechanics.vectors import Matrix, Vector, add, compose, scale, transform, transpose
 from eomgen.model import Quaternion
 from eomgen.model import Turn as Turned
 
@@ -30,6 +44,7 @@ class _Path:
     name: str
     base: int
     spin: Vector[Node]
+    turned: Matrix[Node] | None = None  # the axes here in those of the body
     steps: list[Step] = field(default_factory=list)
     columns: dict[int, Vector[Node]] = field(default_factory=dict)
 
@@ -39,7 +54,14 @@ class _Path:
             return self.base
         kind = SpatialFrame(self.spin)
         place = Place(self.name, kind, self.base, tuple(self.steps), self.columns)
-        return self.draft.put(place)
+        number = self.draft.put(place)
+        if self.turned is not None:
+            self.draft.turned[number] = self.turned
+        return number
+
+    def own(self, vector: Vector[Node]) -> Vector[Node]:
+        """A vector in the axes of the body, in the axes here."""
+        return vector if self.turned is None else transform(transpose(self.turned), vector)
 
     def cut(self, moves: bool) -> None:
         """End a place where another motion begins: what shares a coordinate is joined later."""
@@ -90,6 +112,8 @@ def _to_world(draft: Draft, base: int) -> Matrix[Node]:
         return rotation.identity(algebra, 3)
     known = draft.turned_as.get(base)
     axes = draft.kinematics.axes(known) if known else rotation.identity(algebra, 3)
+    if base in draft.turned:
+        axes = compose(axes, draft.turned[base])
     return tuple((*(draft.zero,) * 3, *row) for row in axes)
 
 
@@ -97,7 +121,7 @@ def _on_frame(draft: Draft, name: str, base: int, offset: Moving) -> int:
     """A place in the axes of its base."""
     if _is_nothing(draft, offset):
         return base
-    path = _Path(draft, name, base, draft.spin(base))
+    path = _Path(draft, name, base, draft.spin(base), draft.turned.get(base))
     _shift(path, offset)
     place = path.end()
     if base in draft.turned_as:
@@ -132,7 +156,7 @@ def _start(draft: Draft, name: str, hung: Hung, offset: Moving) -> _Path:
     """The way to the origin of a frame; where that moves in world axes it is a point first."""
     if hung.on is not None:
         base = frame(draft, hung.on)
-        path = _Path(draft, name, base, draft.spin(base))
+        path = _Path(draft, name, base, draft.spin(base), draft.turned.get(base))
         if not _is_nothing(draft, offset):
             _shift(path, offset)
         return path
@@ -148,33 +172,87 @@ def _start(draft: Draft, name: str, hung: Hung, offset: Moving) -> _Path:
 def _shift(path: _Path, offset: Moving) -> None:
     zero = path.draft.zero
     path.cut(bool(offset.columns))
-    step = Shift(path.spin, offset.values, offset.rate, offset.drift)
-    path.go(step, {c: (zero, zero, zero, *column) for c, column in offset.columns.items()})
+    step = Shift(path.spin, *map(path.own, (offset.values, offset.rate, offset.drift)))
+    columns = {c: path.own(column) for c, column in offset.columns.items()}
+    path.go(step, {c: (zero, zero, zero, *column) for c, column in columns.items()})
 
 
 def _turn(path: _Path, turn: Turned) -> None:
     draft = path.draft
-    algebra, angle = draft.kinematics.algebra, draft.clock.moving([turn.angle])
-    axis = rotation.unit(algebra, turn.axis)
+    angle = draft.clock.moving([turn.angle])
+    axis = _axis(path, turn)
     path.cut(bool(angle.columns))
-    (value,), (rate,), (drift,) = angle.values, angle.rate, angle.drift
-    step: Step
-    number = _aligned(axis, algebra.number(1))
-    if number is None:
-        matrix = rotation.about(algebra, axis, value)
-        path.spin = transform(transpose(matrix), path.spin)
-        step = Rotation(matrix, scale(rate, axis), scale(drift, axis), path.spin)
+    number = _aligned(axis, axis[0].graph.one)
+    step: Turn | SkewTurn | Rotation
+    if number is not None:
+        step = turned(number, _motion(angle, axis[number]), path.spin)
+    elif angle.is_still or any(a.leaves for a in axis):
+        step = _rotation(path, axis, angle)
     else:
-        sign = axis[number]
-        value, rate, drift = sign * value, sign * rate, sign * drift
-        sine, cosine = algebra.apply("sin", value), algebra.apply("cos", value)
-        still = Turn(number, sine, cosine, rate, drift, path.spin)
-        path.spin = still.motion((*path.spin, *path.spin))[:3]
-        step = Turn(number, sine, cosine, rate, drift, path.spin)
-    zero = draft.zero
-    own = {c: (*scale(slope, axis), zero, zero, zero) for c, (slope,) in angle.columns.items()}
-    path.spin = add(path.spin, scale(angle.rate[0], axis))
+        found = _upright(path, axis, turn)
+        axis = (draft.zero, draft.zero, axis[0].graph.one * found.sign)
+        motion = advanced(_motion(angle, axis[2]), found.sine, found.cosine)
+        if found.tilt is None:
+            step = turned_askew(found.matrix, motion, path.spin)
+        else:
+            tilted = turned(0, (*found.tilt, draft.zero, draft.zero), path.spin)
+            path.go(tilted, {})
+            step = turned(2, motion, tilted.spin)
+    path.spin = add(step.spin, scale(angle.rate[0], axis))
+    still = (draft.zero,) * 3
+    own = {c: (*scale(slope, axis), *still) for c, (slope,) in angle.columns.items()}
     path.go(step, own)
+
+
+def _axis(path: _Path, turn: Turned) -> Vector[Node]:
+    """The axis of a turn in the axes before it."""
+    draft = path.draft
+    if turn is draft.words.bodies[path.name].frame.turns[0] and path.name in draft.ahead:
+        return draft.ahead[path.name]
+    return path.own(rotation.unit(draft.kinematics.algebra, turn.axis))
+
+
+def _motion(angle: Moving, sign: Node) -> Motion:
+    """Sine, cosine, rate and drift of an angle, counted the other way round where sign is -1."""
+    (value,), (rate,), (drift,) = angle.values, angle.rate, angle.drift
+    value = sign * value
+    return BUILD["sin"](value), BUILD["cos"](value), sign * rate, sign * drift
+
+
+def _rotation(path: _Path, axis: Vector[Node], angle: Moving) -> Rotation:
+    """A turn that stands still, or about an axis that parameters decide."""
+    (value,), (rate,), (drift,) = angle.values, angle.rate, angle.drift
+    matrix = rotation.about(path.draft.kinematics.algebra, axis, value)
+    spin = transform(transpose(matrix), path.spin)
+    return Rotation(matrix, scale(rate, axis), scale(drift, axis), spin)
+
+
+def _upright(path: _Path, axis: Vector[Node], turn: Turned) -> Upright:
+    """The axes behind a joint about a skew axis; the body has them from now on."""
+    draft, found = path.draft, upright(axis)
+    before = path.turned
+    path.turned = found.axes if before is None else compose(before, found.axes)
+    following = _following(path, turn)
+    ahead = following and towards(
+        found, path.own(rotation.unit(draft.kinematics.algebra, following[1].axis))
+    )
+    if following and ahead:
+        found, draft.ahead[following[0]] = ahead
+        path.turned = found.axes if before is None else compose(before, found.axes)
+    return found
+
+
+def _following(path: _Path, turn: Turned) -> tuple[str, Turned] | None:
+    """The only body that hangs on this one, and its first turn; limbs that are alike stay so."""
+    bodies = path.draft.words.bodies
+    hanging = [(n, b.frame.turns) for n, b in bodies.items() if b.frame.origin.on == path.name]
+    if turn is not bodies[path.name].frame.turns[-1] or len(hanging) != 1:
+        return None
+    ((name, turns),) = hanging
+    first = next(iter(turns), None)
+    if not isinstance(first, Turned) or not all(c.is_number for c in first.axis):
+        return None
+    return name, first
 
 
 def _turn_freely(path: _Path, quaternion: Quaternion) -> None:
@@ -182,6 +260,8 @@ def _turn_freely(path: _Path, quaternion: Quaternion) -> None:
     algebra, zero = path.draft.kinematics.algebra, path.draft.zero
     path.cut(True)
     matrix = rotation.quaternion(algebra, [algebra.of(s) for s in quaternion.symbols])
+    if path.turned is not None:
+        matrix, path.turned = compose(transpose(path.turned), matrix), None
     spin = tuple(algebra.of(s) for s in quaternion.speeds)
     before = transform(transpose(matrix), path.spin)
     units = rotation.identity(algebra, 3)

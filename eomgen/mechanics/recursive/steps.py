@@ -9,7 +9,7 @@ matrix (`Flat`); frames in space use their own axes, and X is a chain of shifts 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from eomgen.algebra.graph import Node
@@ -19,6 +19,7 @@ from eomgen.mechanics.vectors import (
     Matrix,
     Vector,
     add,
+    compose,
     cross,
     dot,
     scale,
@@ -176,7 +177,11 @@ class Turn:
 
     def accelerated(self, acceleration: Vector[Node]) -> Vector[Node]:
         """Alpha gains w x e phi' + e phi''."""
-        (i, j), result = PAIRS[self.axis], list(self.motion(acceleration))
+        return self.gained(self.motion(acceleration))
+
+    def gained(self, moved: Vector[Node]) -> Vector[Node]:
+        """What has been turned, with what the rate of the turn adds."""
+        (i, j), result = PAIRS[self.axis], list(moved)
         result[i] = result[i] + self.spin[j] * self.rate
         result[j] = result[j] - self.spin[i] * self.rate
         result[self.axis] = result[self.axis] + self.drift
@@ -233,6 +238,21 @@ class Turn:
         return tuple(tuple(row) for row in rows)
 
 
+def blockwise(rotation: Matrix[Node], matrix: Matrix[Node]) -> Matrix[Node]:
+    """R m R' of each of the three blocks of an inertia (6, 6)."""
+    rows, back = [list(row) for row in matrix], transposed(rotation)
+    for down, across in ((0, 0), (0, 3), (3, 3)):
+        block = tuple(tuple(row[across : across + 3]) for row in matrix[down : down + 3])
+        if down == across:
+            turned = rigid.turned_tensor(block, rotation)
+        else:
+            turned = compose(compose(rotation, block), back)
+        for i in range(3):
+            for j in range(3):
+                rows[down + i][across + j] = rows[across + j][down + i] = turned[i][j]
+    return tuple(tuple(row) for row in rows)
+
+
 @dataclass(frozen=True)
 class Rotation:
     """Any turn: `matrix` has the axes after as its columns; `spin` as for `Turn`."""
@@ -259,11 +279,7 @@ class Rotation:
 
     def inertia(self, matrix: Matrix[Node]) -> Matrix[Node]:
         """Blockwise R m R'."""
-        zero = matrix[0][0].graph.zero
-        nothing = (zero,) * 3
-        back = transposed(self.matrix)
-        upper, lower = ((*row, *nothing) for row in back), ((*nothing, *row) for row in back)
-        return congruent((*upper, *lower), matrix)
+        return blockwise(self.matrix, matrix)
 
     def rigid(self, body: Rigid) -> Rigid | None:
         """In the axes before."""
@@ -283,6 +299,70 @@ class FreeRotation(Rotation):
 
     def rigid(self, body: Rigid) -> Rigid | None:
         """Never."""
+
+
+@dataclass(frozen=True)
+class SkewTurn:
+    """A constant rotation and a turn about z in one; inertias can be lumped between the two."""
+
+    still: Rotation
+    turn: Turn
+    matrix: Matrix[Node]
+
+    @property
+    def spin(self) -> Vector[Node]:
+        """The angular velocity before, in the axes after."""
+        return self.turn.spin
+
+    def motion(self, twist: Vector[Node]) -> Vector[Node]:
+        """R' w, R' v."""
+        back = transposed(self.matrix)
+        return (*transform(back, twist[:3]), *transform(back, twist[3:]))
+
+    def accelerated(self, acceleration: Vector[Node]) -> Vector[Node]:
+        """Alpha gains w x e phi' + e phi''."""
+        return self.turn.gained(self.motion(acceleration))
+
+    def force(self, wrench: Vector[Node]) -> Vector[Node]:
+        """R n, R f."""
+        return (*transform(self.matrix, wrench[:3]), *transform(self.matrix, wrench[3:]))
+
+    def inertia(self, matrix: Matrix[Node]) -> Matrix[Node]:
+        """Blockwise R m R'."""
+        return blockwise(self.matrix, matrix)
+
+    def rigid(self, body: Rigid) -> Rigid | None:
+        """In the axes before."""
+        return rigid.rotated(body, self.matrix)
+
+    def bound(self, sizes: Vector[Node]) -> Vector[Node]:
+        """The bounds are the same for all axes."""
+        return sizes
+
+
+Motion = tuple[Node, Node, Node, Node]  # of a turn: sine, cosine, rate, drift
+
+
+def turned(axis: int, motion: Motion, spin: Vector[Node]) -> Turn:
+    """A turn about axis 0, 1 or 2, `spin` in the axes before."""
+    step = Turn(axis, *motion, spin)
+    return replace(step, spin=step.motion((*spin, *spin))[:3])
+
+
+def advanced(motion: Motion, sine: Node, cosine: Node) -> Motion:
+    """The motion with a constant angle added."""
+    s, c, rate, drift = motion
+    return s * cosine + c * sine, c * cosine - s * sine, rate, drift
+
+
+def turned_askew(upright: Matrix[Node], motion: Motion, spin: Vector[Node]) -> SkewTurn:
+    """A turn about the third column of a constant rotation, `spin` in the axes before."""
+    sine, cosine, *_ = motion
+    matrix = tuple((cosine * a + sine * b, cosine * b - sine * a, c) for a, b, c in upright)
+    none = (spin[0].graph.zero,) * 3
+    still = Rotation(upright, none, none, transform(transposed(upright), spin))
+    turn = Turn(2, *motion, transform(transposed(matrix), spin))
+    return SkewTurn(still, turn, matrix)
 
 
 def forward(steps: Sequence[Step], twist: Vector[Node]) -> Vector[Node]:
