@@ -9,7 +9,7 @@ PLDI 2000; here rows are grown from the results down to the leaves).
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from eomgen.algebra.graph import Node, below
@@ -190,9 +190,23 @@ def _phases(nodes: Iterable[Node], found: _Search, shapes: _Shapes) -> dict[Node
             continue
         row = found.home.get(node)
         members = (node,) if row is None else row
-        odd = int(row is not None)
-        before = [phases[a] for n in members for a in n.operands if a in phases]
+        if row is None:
+            before = [phases[a] + phases[a] % 2 for a in node.operands if a in phases]
+        else:
+            before = [p for r in found.operands[row] for p in _before(r, found, phases)]
         # the least phase of the right kind that no operand comes after
-        phase = max((p + (p % 2 != odd) for p in before), default=odd)
+        phase = max(before, default=int(row is not None))
         phases.update(dict.fromkeys(members, phase))
     return phases
+
+
+def _before(operand: Row, found: _Search, phases: Mapping[Node, int]) -> Iterator[int]:
+    """The first phases in which a row can be computed from an operand.
+
+    The loop that computes a row can go on with it; values of other rows, or of several, are read
+    when their loops have ended.
+    """
+    for node in operand:
+        if node in phases:
+            phase = phases[node]
+            yield phase if operand in found.operands else phase + 1 + phase % 2
