@@ -3,34 +3,13 @@
 from __future__ import annotations
 
 import sympy as sp
+from lab.spec_text import cart
 from sympy.physics.mechanics import LagrangesMethod, Particle, Point, ReferenceFrame, dynamicsymbols
 
 
 def cart_with_pendulums(count: int) -> str:
     """A cart with a chain of pendulums, angles from the vertical, as a spec."""
-    links = range(1, count + 1)
-    lines = [
-        "eom: 1",
-        f"system: Cart with {count} pendulums",
-        "space: plane",
-        "gravity: [0, -g]",
-        "parameters:",
-        "  g: 9.81 m/s^2",
-        *(f"  m{i}: 1 kg" for i in range(count + 1)),
-        *(f"  l{i}: 0.5 m" for i in links),
-        "coordinates:",
-        "  s: m",
-        *(f"  q{i}: rad" for i in links),
-        "inputs: {F: N}",
-        "points:",
-        "  P0: [s, 0]",
-        *(f"  P{i}: P{i - 1} + l{i}*[sin(q{i}), -cos(q{i})]" for i in links),
-        "bodies:",
-        *(f"  B{i}: {{mass: m{i}, at: P{i}}}" for i in range(count + 1)),
-        "forces:",
-        "  - {on: P0, force: [F, 0]}",
-    ]
-    return "\n".join(lines) + "\n"
+    return cart(f"Cart with {count} pendulums", ["1"] * (count + 1), ["0.5"] * count)
 
 
 AXES = ("z", "y")  # of the joints of an arm, in turn

@@ -25,15 +25,12 @@ from eomgen.cli_common import (
     studied,
 )
 from eomgen.errors import CheckError, UsageError
-from eomgen.wanted import Wanted
+from eomgen.wanted import INTEGRATORS, Wanted
 
 if TYPE_CHECKING:
     from eomgen.simulate_run import Job
 
-METHODS = (
-    "auto", "semi-euler", "semi-euler-damped", "verlet", "rk4", "dopri5", "rosenbrock2", "midpoint",
-    "dop853", "lsoda", "radau", "cvode",
-)  # fmt: skip
+METHODS = ("auto", *INTEGRATORS)
 INTERRUPTED = 130  # as a shell says it of SIGINT
 PATIENCE = 1.0  # seconds before a bar is shown
 

@@ -36,7 +36,7 @@ from eomgen.model import Coordinate, Description, Model, Prescribed, Speed
 from eomgen.program import Function, Program, Read, Variable
 from eomgen.spec.units import si_unit
 
-LARGEST_MATRIX = 64  # equations; above, n^2 entries of M are not written
+LARGEST_MATRIX = 32  # equations; above, the n^2 entries of M are written only if asked for
 LARGEST_UNROLLED = 12  # equations; above, L D L' runs in a loop
 
 

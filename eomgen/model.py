@@ -4,8 +4,10 @@ Formulas are small SymPy expressions over the symbols of the records below, exac
 in SI units. The time is `TIME`.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
 
 import sympy as sp
 
@@ -125,6 +127,22 @@ class Quaternion:
     def formulas(self) -> tuple[sp.Expr, ...]:
         """What turns."""
         return self.symbols
+
+    @property
+    def accelerations(self) -> tuple[sp.Symbol, ...]:
+        """The derivatives of the speeds."""
+        return tuple(sp.Symbol(f"{s.name}'", real=True) for s in self.speeds)
+
+
+def quaternion_rates(parts: Sequence[Any], spin: Sequence[Any]) -> tuple[Any, ...]:
+    """e' = e (0, w) / 2 with the angular velocity w in the axes after the turn; any scalars."""
+    (e, x, y, z), (a, b, c), half = parts, spin, Fraction(1, 2)
+    return (
+        -((x * a + y * b + z * c) * half),
+        (e * a + (y * c - z * b)) * half,
+        (e * b + (z * a - x * c)) * half,
+        (e * c + (x * b - y * a)) * half,
+    )
 
 
 @dataclass(frozen=True)

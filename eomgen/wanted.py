@@ -7,7 +7,12 @@ from fractions import Fraction
 
 from eomgen.errors import UsageError
 
-NAMES = ("auto", "minimal", "nullspace", "multiplier")
+FORMULATIONS = ("minimal", "nullspace", "multiplier")
+NAMES = ("auto", *FORMULATIONS)
+INTEGRATORS = (  # of fixed steps, in generated code, then adaptive
+    "semi-euler", "semi-euler-damped", "verlet", "rk4", "dopri5", "rosenbrock2", "midpoint",
+    "dop853", "lsoda", "radau", "cvode",
+)  # fmt: skip
 LARGEST = Fraction(1, 5)  # alpha * h: above, Baumgarte's terms cost the integrator its order
 
 

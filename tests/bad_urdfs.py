@@ -1,6 +1,6 @@
 """Wrong and hostile URDF files with every fault that they must be refused with."""
 
-from typing import NamedTuple
+from bad_specs import Bad
 
 MASS = '<mass value="2"/>'
 INERTIA = '<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>'
@@ -37,14 +37,6 @@ def chain(links, name):
     pairs = zip(names, names[1:], strict=False)
     parts = (one.format(before, after, MASS, INERTIA) for before, after in pairs)
     return f'<robot><link name="base"/>{"".join(parts)}</robot>'
-
-
-class Bad(NamedTuple):
-    """A file and its faults as `line:column code`, all of them, in order."""
-
-    name: str
-    text: str | bytes
-    faults: str
 
 
 def changed(old, new):

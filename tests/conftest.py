@@ -16,6 +16,7 @@ from scenes import SHIPPED
 
 from eomgen.cache_folder import VARIABLE
 from eomgen.cli import main
+from eomgen.numerics.compiled import load_python
 
 HEAVY = frozenset((Path(__file__).parent / "heavy.txt").read_text(encoding="utf-8").split("\n"))
 TARGETS = ("-t", "latex", "-t", "c", "-t", "python", "-t", "text")
@@ -54,6 +55,18 @@ def generated(tmp_path_factory):
         return own
 
     return folder_of
+
+
+@pytest.fixture(scope="session")
+def module(generated):
+    """A case of `reference` -> the module that was written for it, imported."""
+
+    @cache
+    def imported(case):
+        text = (generated(case) / "en" / f"{stem(case)}.py").read_text(encoding="utf-8")
+        return load_python(text, stem(case))
+
+    return imported
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -10,7 +10,7 @@ import pytest
 from scenes import SHIPPED, study_of, text_of
 from tools import tool
 
-from eomgen import charting
+from eomgen import charting, study
 from eomgen.chart import front, make, reference, runs, tables, variants
 from eomgen.chart.records import Chart, Combination, Errors, Point, Reference, Sweep
 from eomgen.errors import CheckError, UsageError
@@ -25,7 +25,7 @@ def point(cost, error, **more):
     step, status, name, precision = (more.pop(k) for k in ("step", "status", "name", "precision"))
     given = {"formulation": "minimal", "order": 4, "states": 4, "projects": False} | more
     run = Combination(integrator=name, precision=precision, step=step, **given)
-    return Point(run, status, Errors(error, error / 2, 0.0, 0.0), cost)
+    return Point(run, status, Errors(error, error / 2, NAN, 0.0, 0.0), cost)
 
 
 def chart_of(points, **sweep):
@@ -133,6 +133,19 @@ def test_the_page_draws_itself(pendulums, tmp_path):
         (tmp_path / name).write_text(text, encoding="utf-8")
     run(latex, "-interaction=nonstopmode", "-halt-on-error", "chart.tex", folder=tmp_path)
     assert (tmp_path / "chart.pdf").stat().st_size > 10_000
+
+
+def test_outputs_have_errors_of_their_own(pendulums):
+    """Where the outputs are the coordinates, the two errors are the same."""
+    tool("cc")
+    sweep = Sweep(horizon=2.0, precisions=("f64", "f32"), integrators=("rk4",), seconds=10.0)
+    text = text_of("double_pendulum") + "outputs: {one: phi_1, other: phi_2}\n"
+    found = make.chart(study.of_text(text, "s.yaml"), sweep, "{}", {})
+    assert {p.run.precision for p in found.good} == {"f64", "f32"}
+    assert all(p.errors.outputs == p.errors.positions > 0 for p in found.good)
+    assert ",outputs,energy," in tables.as_csv(found)
+    assert "outputs" in charting.texts(found)["chart.tex"]
+    assert all(run["outputs"] is None for run in json.loads(tables.as_json(pendulums))["runs"])
 
 
 def test_the_pictures_are_the_same_each_time(pendulums):

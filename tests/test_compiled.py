@@ -4,12 +4,13 @@ import ctypes
 
 import numpy as np
 import pytest
-from programs import PROGRAMS, arguments
+from programs import PROGRAMS, add, arguments, mul, n, op, program
 from tools import tool
 
 from eomgen.errors import CheckError, UsageError
 from eomgen.interpreter import FLOAT, run
 from eomgen.numerics.compiled import build, load_python
+from eomgen.program import Function, Read, Solve, Value, Variable
 from eomgen.render.names import module
 from eomgen.render.targets import TARGETS, render
 from eomgen.render.templating import environment
@@ -172,3 +173,31 @@ def test_the_words_of_the_compiler_are_the_error():
     tool("cc")
     with pytest.raises(UsageError, match=r"a\.c:1"):
         build({"a.c": "not C\n"}, PROGRAMS["chain"])
+
+
+def rational_system(size=13):
+    """Two right sides over a matrix of quotients: every operation rounds alike everywhere."""
+    q = [Read("state", i) for i in range(size)]
+    entries = [
+        add(n(j + 9), mul(q[i], q[i])) if i == j else op("divide", q[i], n(3 + i + 2 * j))
+        for i in range(size)
+        for j in range(i + 1)
+    ]
+    names = tuple(f"x{i}" for i in range(2 * size))
+    solve = Solve(names, tuple(entries), (*q, *(mul(x, x) for x in q)))
+    results = tuple(Value(name) for name in names)
+    functions = (Function("columns", "two right sides", (2, size), (solve,), results),)
+    coordinates = tuple(Variable(f"q{i}") for i in range(size))
+    return program("rational", functions, coordinates=coordinates, speeds=())
+
+
+def test_a_system_in_a_loop_has_the_same_bits_everywhere():
+    """One order of operations, one reciprocal per pivot: in C, in Python, in the interpreter."""
+    tool("cc")
+    made, files = rational_system(), environment()
+    compiled = build(render(made, TARGETS["c"], files), made, "double")
+    python = load_python(render(made, TARGETS["python"], files)["rational.py"], "rational")
+    state = list(np.random.default_rng(3).uniform(0.1, 0.9, 13))
+    expected = reference(made, made.functions[0], (0.0, state, [], []))
+    assert (compiled.call("columns", 0.0, state, [], []) == expected).all()
+    assert (python.columns(0.0, state) == expected).all()

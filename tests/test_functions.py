@@ -277,6 +277,16 @@ def test_the_functions_are_those_asked_for_in_that_order_each_once():
     assert found == ["energy", "position_of_fore", "inverse_dynamics", *standard]
 
 
+def test_the_mass_matrix_of_a_large_scene_is_there_when_asked_for(monkeypatch):
+    machine = compile.machine_of(model_of("double_pendulum"))
+    expected = compile.program(machine).function("mass_matrix")
+    monkeypatch.setattr(compile, "LARGEST_MATRIX", 1)
+    small = compile.program(machine)
+    assert "mass_matrix" not in [f.name for f in small.functions]
+    (found,) = table.select(small, machine, ["mass_matrix"]).functions
+    assert found == expected
+
+
 def test_every_row_says_what_it_is():
     for name in (*table.ROWS, "position_of:fore", "velocity_of:fore", "jacobian_of:fore"):
         (found,) = select("skew_arm", name)

@@ -8,8 +8,6 @@ from reference import LINKED_CASES, stem, wanted
 from scenes import LINKED, model_of, study_of
 from scipy.integrate import solve_ivp
 
-from eomgen.numerics.compiled import load_python
-
 pytestmark = pytest.mark.slow
 
 # [s], else 0.5: the squeezer is fast, the others come near a singular position later
@@ -40,18 +38,6 @@ def test_the_list_of_scenes_with_multipliers_is_complete():
         and wanted(case) in ("auto", "multiplier")
     ]
     assert found == WITH_MULTIPLIERS
-
-
-@pytest.fixture(scope="session")
-def module(generated):
-    """A case of `reference` -> the module that was written for it, imported."""
-
-    @cache
-    def imported(case):
-        text = (generated(case) / "en" / f"{stem(case)}.py").read_text(encoding="utf-8")
-        return load_python(text, stem(case))
-
-    return imported
 
 
 def power(case, found, t, state, inputs):

@@ -1,7 +1,6 @@
 """The Python that the command line writes for every shipped spec: imported, run, true."""
 
 import sys
-from functools import cache
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ from scipy.integrate import solve_ivp
 
 from eomgen import interpreter
 from eomgen.evaluate import depends_on_time
-from eomgen.numerics.compiled import load_python
 
 pytestmark = pytest.mark.slow
 
@@ -23,18 +21,6 @@ atwood_machine ball_joints central_force double_pendulum elastic_pendulum heavy_
 rolling_cylinder simple_pendulum slider_pendulum_free slider_spring_pendulum sliding_ladder
 spherical_pendulum sprung_pair
 """.split()  # noqa: SIM905
-
-
-@pytest.fixture(scope="session")
-def module(generated):
-    """A case of `reference` -> the module that was written for it, imported."""
-
-    @cache
-    def imported(case):
-        text = (generated(case) / "en" / f"{stem(case)}.py").read_text(encoding="utf-8")
-        return load_python(text, stem(case))
-
-    return imported
 
 
 def called(module, case, function, number):

@@ -10,6 +10,8 @@ from eomgen.errors import UsageError
 from eomgen.integrators import methods
 from eomgen.integrators.methods import METHODS
 from eomgen.integrators.tableaus import DOPRI5, RK4, ROS2, Tableau
+from eomgen.numerics import adaptive
+from eomgen.wanted import INTEGRATORS
 
 EXPLICIT = {"rk4": RK4, "dopri5": DOPRI5}
 
@@ -100,3 +102,7 @@ def test_methods_are_chosen_once_in_the_order_of_the_table():
     assert methods.chosen(("all",)) == tuple(METHODS.values())
     with pytest.raises(UsageError, match="no integrator 'euler'; there are semi-euler, "):
         methods.chosen(("euler",))
+
+
+def test_the_command_line_and_the_language_list_every_integrator():
+    assert (*METHODS, *adaptive.NAMES) == INTEGRATORS

@@ -16,7 +16,7 @@ ALLOWED: dict[str, set[str]] = {
     "model": {"dimension"},
     "program": set(),
     "latex_name": {"errors"},
-    "spec": {"errors", "dimension", "latex_name", "model"},
+    "spec": {"errors", "dimension", "latex_name", "model", "wanted"},
     "algebra": {"errors", "program", "model"},
     "mechanics": RECORDS | {"algebra"},
     "interpreter": RECORDS | {"algebra"},

@@ -156,6 +156,14 @@ def test_results_may_overlap_the_state_in_parts_too():
     assert list(shared) == expected.tolist()
 
 
+def test_the_state_derivative_is_made_of_the_parts_of_the_accelerations():
+    made = coded(program_of("skew_arm"), Style(longest=40))
+    source_ = render(made, TARGETS["c"], environment())["skew_arm.c"]
+    assert source_.count("part_1_of_accelerations(") == 3  # itself and two callers
+    assert "part_1_of_state_derivative(" not in source_
+    assert "part_1_of_energy(" in source_
+
+
 @each((ONE_PIECE,))
 def test_both_forms_are_the_same_bits(name, limit):
     program = program_of(name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import platform
 import shutil
 import subprocess
 from collections.abc import Mapping, Sequence
@@ -15,6 +16,11 @@ COMPILERS: dict[str, tuple[str, ...]] = {
     "gcc -O3 native": ("gcc", *NATIVE),
     "gcc -O2": ("gcc", "-O2", "-fno-math-errno"),
     "clang -O3 native": ("clang", *NATIVE),
+}
+AVX2 = {  # where `native` may be wider
+    f"{name} AVX2": (name, *NATIVE, "-mno-avx512f")
+    for name in ("gcc", "clang")
+    if platform.machine() == "x86_64"
 }
 
 

@@ -85,6 +85,7 @@ RATIOS = (
     ("ours, run-time parameters", "ours, folded"),
     ("ours, folded", "ours, batch, folded"),
     ("ours, folded, fast trig", "ours, batch, folded, fast trig"),
+    ("ours, folded", "ours, batch, folded, AVX2"),
 )
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 import tempfile
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from lab.build import Source
+from lab.build import AVX2, COMPILERS, Source
 from lab.contestants import Contestant
 from lab.limits import output_within
 from lab.spec_text import spec
@@ -61,6 +61,7 @@ class Row:
     name: str
     options: tuple[str, ...]
     call: dict[str, str]
+    compilers: dict[str, tuple[str, ...]] = field(default_factory=lambda: COMPILERS)
 
 
 ROWS = (
@@ -69,6 +70,7 @@ ROWS = (
     Row("ours, folded, fast trig", ("--fold", "--fast-trig"), PREPARED),
     Row("ours, batch, folded", ("--fold", "--batch"), BATCH),
     Row("ours, batch, folded, fast trig", ("--fold", "--batch", "--fast-trig"), BATCH),
+    Row("ours, batch, folded, AVX2", ("--fold", "--batch"), BATCH, AVX2),
 )
 
 
@@ -112,4 +114,5 @@ def contestants(tree: Tree, missing: list[str]) -> Iterator[Contestant]:
             absolute=tree.planar,
             text="parameters",
             batch=row.call is BATCH,
+            compilers=row.compilers,
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt
@@ -39,18 +39,22 @@ def spec(tree: Tree) -> str:
 
 
 def _cart(tree: Tree) -> str:
-    """As on a blackboard: points by their positions, angles from the vertical."""
-    count = len(tree.links) - 1
-    pendulums = range(1, count + 1)
+    masses = [_decimal(link.mass) for link in tree.links]
+    return cart(tree.name, masses, [_decimal(-link.com[1]) for link in tree.links[1:]])
+
+
+def cart(title: str, masses: Sequence[str], lengths: Sequence[str]) -> str:
+    """A cart with a chain of pendulums: points by their positions, angles from the vertical."""
+    pendulums = range(1, len(masses))
     lines = [
         "eom: 1",
-        f"system: {tree.name}",
+        f"system: {title}",
         "space: plane",
         "gravity: [0, -g]",
         "parameters:",
         "  g: 9.81 m/s^2",
-        *(f"  m{i}: {_decimal(link.mass)} kg" for i, link in enumerate(tree.links)),
-        *(f"  l{i}: {_decimal(-tree.links[i].com[1])} m" for i in pendulums),
+        *(f"  m{i}: {mass} kg" for i, mass in enumerate(masses)),
+        *(f"  l{i}: {length} m" for i, length in enumerate(lengths, start=1)),
         "coordinates:",
         "  s: m",
         *(f"  q{i}: rad" for i in pendulums),
@@ -59,7 +63,7 @@ def _cart(tree: Tree) -> str:
         "  P0: [s, 0]",
         *(f"  P{i}: P{i - 1} + l{i}*[sin(q{i}), -cos(q{i})]" for i in pendulums),
         "bodies:",
-        *(f"  B{i}: {{mass: m{i}, at: P{i}}}" for i in range(count + 1)),
+        *(f"  B{i}: {{mass: m{i}, at: P{i}}}" for i in range(len(masses))),
         "forces:",
         "  - {on: P0, force: [F, 0]}",
     ]

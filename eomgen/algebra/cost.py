@@ -6,7 +6,8 @@ operations in one long chain may take longer than one with more of them side by 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections import Counter
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
 from eomgen.algebra.graph import Node, below
@@ -43,35 +44,36 @@ def of(results: Collection[Node], prepared: int = 0) -> Cost:
 
     prepared: bit set of leaves; what depends on these only is known before and costs nothing.
     """
-    nodes = below(results)
-    return Cost(_operations(nodes, prepared), _longest_chain(nodes, prepared))
+    moving = _moving(results, prepared)
+    return Cost(_operations(moving), _longest_chain(moving))
 
 
 def operations(results: Iterable[Node], prepared: int = 0) -> int:
     """The weighted operations that results take."""
-    return _operations(below(results), prepared)
+    return _operations(_moving(results, prepared))
 
 
-def _operations(nodes: Iterable[Node], prepared: int) -> int:
-    moving, total = ~prepared, 0
-    for node in nodes:
-        if node.leaves & moving:
-            weight = WEIGHTS.get(node.operator)
-            total += _system(node) if weight is None else weight
-    return total
+def _moving(results: Iterable[Node], prepared: int) -> list[Node]:
+    """The nodes that are not known before, in order of evaluation."""
+    bits = ~prepared
+    return [node for node in below(results) if node.leaves & bits]
 
 
-def _longest_chain(nodes: Iterable[Node], prepared: int) -> int:
+def _operations(nodes: Sequence[Node]) -> int:
+    counts = Counter([node.operator for node in nodes if node.operator != "system"])
+    systems = sum(_system(node) for node in nodes if node.operator == "system")
+    return sum(WEIGHTS[operator] * count for operator, count in counts.items()) + systems
+
+
+def _longest_chain(nodes: Iterable[Node]) -> int:
     """The cycles that pass from the arguments, sines and cosines known, to the last result."""
-    moving = ~prepared
     ready: dict[Node, int] = {}
     for node in nodes:
-        if node.leaves & moving:
-            takes = CYCLES.get(node.operator)
-            start = max([ready[a] for a in node.operands], default=0)
-            ready[node] = start + (_chain_of_system(node) if takes is None else takes)
-        else:
-            ready[node] = 0
+        start = 0
+        for operand in node.operands:
+            start = max(start, ready.get(operand, 0))
+        takes = CYCLES.get(node.operator)
+        ready[node] = start + (_chain_of_system(node) if takes is None else takes)
     return max(ready.values(), default=0)
 
 

@@ -393,7 +393,8 @@ def below(nodes: Iterable[Node], stop: Callable[[Node], bool] | None = None) -> 
     while stack:
         node = stack.pop()
         if stop is None or not stop(node):
-            new = [operand for operand in node.operands if operand not in found]
-            found.update(new)
-            stack += new
+            for operand in node.operands:
+                if operand not in found:
+                    found.add(operand)
+                    stack.append(operand)
     return sorted(found, key=attrgetter("id"))

@@ -1,4 +1,4 @@
-"""The chart as a picture: four panels over one cost, for the screen and for print."""
+"""The chart as a picture: panels over one cost, for the screen and for print."""
 
 from __future__ import annotations
 
@@ -25,6 +25,7 @@ Value = Callable[[Errors], float]
 PANELS: tuple[tuple[str, Value], ...] = (
     ("largest error of positions, relative", lambda e: e.positions),
     ("largest error of rates, relative", lambda e: e.rates),
+    ("largest error of outputs, relative", lambda e: e.outputs),
     ("largest error of energy, relative", lambda e: e.energy),
     ("largest residual of constraints, relative", lambda e: e.constraint),
 )

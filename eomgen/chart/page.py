@@ -12,7 +12,7 @@ from eomgen.render.latex_text import escaped
 from eomgen.render.templating import environment, fill
 
 CSV = "chart.csv"
-COLUMNS = ("positions", "rates", "energy", "constraint")  # beside `PANELS`
+COLUMNS = ("positions", "rates", "outputs", "energy", "constraint")  # beside `PANELS`
 MARKS = {
     "semi-euler": "triangle*, mark options={rotate=180}",
     "semi-euler-damped": "triangle*, mark options={rotate=90}", "verlet": "triangle*", "rk4": "*",

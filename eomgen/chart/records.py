@@ -57,6 +57,7 @@ class Errors:
 
     positions: float
     rates: float
+    outputs: float  # of the spec
     energy: float
     constraint: float  # of the residuals, over the size of the coordinates
 

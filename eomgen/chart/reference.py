@@ -22,6 +22,7 @@ OUTPUTS = 240  # times at which runs are compared: many divisors
 THRESHOLD = 1e-3  # SI; a quantity that stays below it is compared with it
 TIGHT = Tolerances(3e-13, 1e-15)
 TIGHT_STIFF = Tolerances(1e-11, 1e-14)
+NEARBY = Tolerances(1e-11, 1e-13)
 FINER = 64.0  # steps of the second way for each radian of the fastest mode
 MOST_STEPS = 4_000_000
 NUDGE = 1e-8  # of the first coordinate, to see whether neighbours part
@@ -33,11 +34,12 @@ SAMPLED = 12
 
 @dataclass(frozen=True)
 class Motion:
-    """Coordinates and rates (N, n) over times (N,), and the size of each of them."""
+    """Coordinates and rates (N, n) and outputs (N, k) over times (N,), and their sizes."""
 
     times: Array
     places: Array
     rates: Array
+    outputs: Array
     modes: Array  # eigenvalues [1/s] at some of the times
 
     @property
@@ -48,7 +50,7 @@ class Motion:
 
 def size_of(values: Array) -> Array:
     """The largest value of each column, at least the threshold."""
-    found: Array = np.maximum(np.max(np.abs(values), axis=0), THRESHOLD)
+    found: Array = np.max(np.abs(values), axis=0, initial=THRESHOLD)
     return found
 
 
@@ -83,12 +85,15 @@ def of(variants: Sequence[Variant], horizon: float) -> tuple[Motion, Reference]:
 
 
 def _adaptive(variant: Variant, times: Array) -> tuple[Motion, str]:
-    values = eigenvalues(variant.setup)
-    is_stiff = stiff(values, times[-1] - times[0]).size > 0
-    choice = (
-        Choice("radau", "", limits=TIGHT_STIFF) if is_stiff else Choice("dop853", "", limits=TIGHT)
-    )
+    choice = _chosen(variant, times[-1] - times[0], TIGHT, TIGHT_STIFF)
     return motion_of(variant, choice, times), f"{choice.method} rtol {choice.limits.rtol:g}"
+
+
+def _chosen(variant: Variant, span: float, calm: Tolerances, stiffly: Tolerances) -> Choice:
+    """The adaptive method for a scene, with the tolerances of one that is stiff or is not."""
+    if stiff(eigenvalues(variant.setup), span).size:
+        return Choice("radau", "", limits=stiffly)
+    return Choice("dop853", "", limits=calm)
 
 
 def motion_of(variant: Variant, choice: Choice, times: Array) -> Motion:
@@ -105,8 +110,13 @@ def motion_of(variant: Variant, choice: Choice, times: Array) -> Motion:
             "take a shorter --horizon"
         )
     states = np.concatenate([r.states for r in found])
-    places, rates = variant.places(reached, states)
-    return Motion(reached, places, rates, _modes(variant, reached, states))
+    return _motion(variant, reached, states, _modes(variant, reached, states))
+
+
+def _motion(variant: Variant, times: Array, states: Array, modes: Array) -> Motion:
+    """The motion of a variant through these states."""
+    places, rates = variant.places(times, states)
+    return Motion(times, places, rates, variant.outputs(times, states), modes)
 
 
 def _modes(variant: Variant, times: Array, states: Array) -> Array:
@@ -131,8 +141,7 @@ def _fixed(variant: Variant, times: Array, modes: Array) -> tuple[Motion, str]:
             "the second way to the reference stops; take a shorter --horizon, "
             "or other --formulations"
         )
-    places, rates = variant.places(found.times, found.states)
-    return Motion(found.times, places, rates, modes), f"dopri5 h = {grid.step:.3g} s"
+    return _motion(variant, found.times, found.states, modes), f"dopri5 h = {grid.step:.3g} s"
 
 
 def trusted_horizon(variant: Variant, horizon: float, target: float) -> tuple[float, str]:
@@ -145,8 +154,7 @@ def trusted_horizon(variant: Variant, horizon: float, target: float) -> tuple[fl
     moved = start.state.copy()
     moved[0] += NUDGE
     near = replace(variant, setup=replace(variant.setup, start=replace(start, state=moved)))
-    choice = Choice("radau" if _is_stiff(variant, horizon) else "dop853", "",
-                    limits=Tolerances(1e-11, 1e-13))  # fmt: skip
+    choice = _chosen(variant, horizon, NEARBY, NEARBY)
     one, other = motion_of(variant, choice, times), motion_of(near, choice, times)
     apart = np.max(np.abs(one.places - other.places) / one.scales[0], axis=1)
     if np.max(apart) < PARTED * apart[0]:
@@ -156,7 +164,3 @@ def trusted_horizon(variant: Variant, horizon: float, target: float) -> tuple[fl
     trusted = log(target / DUST) / rate
     said = f"I-CHAOS: lambda = {rate:.2g}/s; comparisons valid to {trusted:.3g} s"
     return min(horizon, trusted), said
-
-
-def _is_stiff(variant: Variant, horizon: float) -> bool:
-    return stiff(eigenvalues(variant.setup), horizon).size > 0

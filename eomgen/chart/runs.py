@@ -107,7 +107,7 @@ def made(plan: Plan, reference: Motion, known: float) -> Point:
 def missing(plan: Plan) -> Point:
     """The point of a run that was not made."""
     none = float("nan")
-    errors = Errors(none, none, none, none)
+    errors = Errors(none, none, none, none, none)
     return Point(plan.run, "timeout", errors, plan.operations / plan.run.step)
 
 
@@ -121,14 +121,22 @@ def measured(plan: Plan, found: Rows, reference: Motion) -> Errors:
     variant, precision = plan.variant, plan.run.precision
     count = len(found.times)
     places, rates = variant.places(found.times, found.states, precision)
+    outputs = variant.outputs(found.times, found.states, precision)
     rows = slice(None, count * plan.stride, plan.stride)
-    scale_q, scale_v = reference.scales
     return Errors(
-        positions=_largest(np.abs(places - reference.places[rows]) / scale_q),
-        rates=_largest(np.abs(rates - reference.rates[rows]) / scale_v),
+        positions=_off(places, reference.places, rows),
+        rates=_off(rates, reference.rates, rows),
+        outputs=_off(outputs, reference.outputs, rows),
         energy=_energy(variant, found),
         constraint=_constraint(variant, found, places),
     )
+
+
+def _off(found: Array, reference: Array, rows: slice) -> float:
+    """The largest error over the size of its column; NaN where there is no column."""
+    if not reference.shape[1]:
+        return float("nan")
+    return _largest(np.abs(found - reference[rows]) / size_of(reference))
 
 
 def _largest(values: Array) -> float:

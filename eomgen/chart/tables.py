@@ -15,8 +15,8 @@ from eomgen.chart.records import FAILURES, OK, SCHEMA, Chart, Point
 
 COLUMNS = (
     "formulation", "integrator", "order", "precision", "step", "states", "projects", "status",
-    "resolved", "front", "positions", "rates", "energy", "constraint", "operations", "seconds",
-    "median", "series",
+    "resolved", "front", "positions", "rates", "outputs", "energy", "constraint", "operations",
+    "seconds", "median", "series",
 )  # fmt: skip
 
 
@@ -98,9 +98,9 @@ def as_markdown(chart: Chart) -> str:
         f"difference {chart.reference.error:.1e}.",
         *(f"{remark}." for remark in chart.remarks),
         "",
-        "| on the front | step | precision | error of positions | of rates | energy | constraint |"
-        " operations / s | CPU s / s |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "| on the front | step | precision | error of positions | of rates | of outputs | energy |"
+        " constraint | operations / s | CPU s / s |",
+        "|---|---|---|---|---|---|---|---|---|---|",
         *(_line(p) for p in front(chart.points)),
         "",
     ]
@@ -123,7 +123,7 @@ def _line(point: Point) -> str:
         point.run.name,
         milliseconds(point.run.step),
         point.run.precision,
-        *(_number(v) for v in (e.positions, e.rates, e.energy, e.constraint)),
+        *(_number(v) for v in (e.positions, e.rates, e.outputs, e.energy, e.constraint)),
         f"{point.operations:.3g}",
         "-" if point.seconds is None else f"{point.seconds:.2e}",
     )

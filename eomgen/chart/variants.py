@@ -44,6 +44,10 @@ class Variant:
         slopes = engine.sweep("state_derivative", times, states)
         return states[:, :count], slopes[:, :count]
 
+    def outputs(self, times: Array, states: Array, precision: str = "f64") -> Array:
+        """The outputs of the spec (N, k), in double."""
+        return self.engines[precision].sweep("outputs", times, states)
+
 
 def of(
     study: Study, state: str, inputs: dict[str, str], names: Sequence[str]

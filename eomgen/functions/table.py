@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from eomgen.algebra.assemble import assemble
 from eomgen.algebra.graph import Node
 from eomgen.algebra.jacobian import Rows, jacobian
-from eomgen.compile import Machine
+from eomgen.compile import FUNCTIONS, Machine
 from eomgen.errors import UsageError
 from eomgen.functions import base, places, sensitivity
 from eomgen.functions.motion import Motion
@@ -63,7 +63,7 @@ def _function(motion: Motion, own: dict[str, Function], name: str) -> Function:
     kind, colon, place = name.partition(":")
     if kind in ROWS_AT and colon:
         return ROWS_AT[kind].build(motion, place)
-    known = [STANDARD, *own, *ROWS, *(f"{k}:POINT" for k in ROWS_AT)]
+    known = list(dict.fromkeys([STANDARD, *own, *ROWS, *(f"{k}:POINT" for k in ROWS_AT)]))
     near = get_close_matches(name, known, 1, 0.6)
     hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(known)}"
     raise UsageError(f"--functions: unknown function {name[:60]!r}; {hint}")
@@ -76,6 +76,10 @@ def _in_motion(function: Function) -> Function:
 
 def _flat(rows: Rows) -> list[Node]:
     return [entry for row in rows for entry in row]
+
+
+def _mass_matrix(motion: Motion) -> Function:
+    return FUNCTIONS["mass_matrix"](motion.machine)
 
 
 def _inverse_dynamics(motion: Motion) -> Function:
@@ -187,6 +191,7 @@ def _at(
 
 
 ROWS: dict[str, Row] = {
+    "mass_matrix": Row("M of M u' + h = Q, which large scenes are not given", _mass_matrix),
     "inverse_dynamics": Row("generalized forces that chosen accelerations need", _inverse_dynamics),
     "inverse_dynamics_jacobian": Row("its derivatives by q, u, u'", _inverse_dynamics_jacobian),
     "state_jacobian": Row("derivatives of the state derivative by (q, u)", _state_jacobian),

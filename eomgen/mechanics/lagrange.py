@@ -62,7 +62,7 @@ def _turning(
         moved = dict(zip(q.symbols, motions.rates(q, algebra, tuple(own.values())), strict=True))
         rates |= moved
         derivatives |= moved
-        derivatives |= {s: algebra.of(sp.Symbol(f"{s.name}'", real=True)) for s in q.speeds}
+        derivatives |= {s: algebra.of(a) for s, a in zip(q.speeds, q.accelerations, strict=True)}
         spins |= own
     return spins
 

@@ -9,10 +9,9 @@ from typing import Generic
 import sympy as sp
 
 from eomgen.algebra.scalar import Algebra, S
-from eomgen.mechanics import rotation
 from eomgen.mechanics.equations import virtual_name
 from eomgen.mechanics.vectors import Vector, dot
-from eomgen.model import Coordinate, Model, Quaternion
+from eomgen.model import Coordinate, Model, Quaternion, quaternion_rates
 
 AXES = ("x", "y", "z")
 
@@ -60,10 +59,10 @@ def of(model: Model, algebra: Algebra[S]) -> tuple[Motion[S], ...]:
 
 def _turns(quaternion: Quaternion, algebra: Algebra[S]) -> Iterator[Motion[S]]:
     """The turns about the body-fixed axes: de = e (0, d pi) / 2."""
-    for i, speed in enumerate(quaternion.speeds):
+    pairs = zip(quaternion.speeds, quaternion.accelerations, strict=True)
+    for i, (speed, rate) in enumerate(pairs):
         axis = tuple(algebra.number(int(i == j)) for j in range(3))
         direction = dict(zip(quaternion.symbols, rates(quaternion, algebra, axis), strict=True))
-        rate = sp.Symbol(f"{speed.name}'", real=True)
         name = turn_name(quaternion, i)
         yield Motion(speed.name, name, speed, rate, direction, (quaternion, i))
 
@@ -71,7 +70,7 @@ def _turns(quaternion: Quaternion, algebra: Algebra[S]) -> Iterator[Motion[S]]:
 def rates(quaternion: Quaternion, algebra: Algebra[S], spin: Vector[S]) -> tuple[S, ...]:
     """e' of a quaternion that turns with the angular velocity `spin` in the turned axes."""
     parts = [algebra.of(s) for s in quaternion.symbols]
-    return rotation.quaternion_rates(algebra, parts, spin)
+    return quaternion_rates(parts, spin)
 
 
 def normalised(model: Model, algebra: Algebra[S]) -> tuple[S, ...]:

@@ -8,7 +8,7 @@ from fractions import Fraction
 import sympy as sp
 
 from eomgen.algebra.scalar import Algebra, S
-from eomgen.mechanics.vectors import Matrix, Vector, add, cross, dot, scale
+from eomgen.mechanics.vectors import Matrix, Vector, scale
 from eomgen.model import Quaternion, Turn
 
 
@@ -59,14 +59,6 @@ def quaternion(algebra: Algebra[S], parts: Sequence[S]) -> Matrix[S]:
         (2 * (x * y + e * z), 1 - 2 * (x * x + z * z), 2 * (y * z - e * x)),
         (2 * (x * z - e * y), 2 * (y * z + e * x), 1 - 2 * (x * x + y * y)),
     )
-
-
-def quaternion_rates(algebra: Algebra[S], parts: Sequence[S], spin: Vector[S]) -> tuple[S, ...]:
-    """e' = e (0, w) / 2 with the angular velocity w in the axes after the turn."""
-    e, v = parts[0], tuple(parts[1:])
-    half = Fraction(1, 2)
-    moving = add(scale(e, spin), cross(v, spin))
-    return (-(dot(v, spin) * half), *(c * half for c in moving))
 
 
 def identity(algebra: Algebra[S], size: int) -> Matrix[S]:

@@ -15,7 +15,6 @@ from eomgen.numerics.records import UNPROJECTED, Array, Engine, Function, Rows, 
 SCIPY = {"dop853": "DOP853", "lsoda": "LSODA", "radau": "Radau"}
 SUNDIALS = "cvode"
 NAMES = (*SCIPY, SUNDIALS)
-ONE_STEP = ("dop853", "radau")  # these forget the steps before: the state may be projected
 IMPLICIT = ("lsoda", "radau")
 Project = Callable[[float, Array], tuple[Array, int]]
 Dense = Callable[[float], Array]

@@ -59,7 +59,8 @@ _C_CALLS = {operator: name.upper() for operator, name in C_FUNCTIONS.items()} | 
 LONGEST = 1000
 _OWN = _words("""
 t state accelerations inputs p m work result waves lane bad REAL EPSILON PIVOT LANES NOT_ABOVE
-APART INLINED WAVE_RANGE SIGN_BIT bits bits_of real_of reduced sine_and_cosine sine cosine
+ALIGNED SIDE_BY_SIDE APART INLINED WAVE_RANGE SIGN_BIT bits bits_of real_of reduced
+sine_and_cosine sine cosine
 lane_waves lane_sine lane_cosine gather scatter pick
 """)
 C = Dialect(

@@ -144,6 +144,7 @@ class Routine:
     takes: tuple[str, ...]  # which of `ARGUMENTS` a caller passes
     uses: tuple[str, ...]  # which of these are read
     can_fail: bool  # a pivot is checked
+    base: str = ""  # whose parts it shares; their results follow those of the body
 
 
 def routine(function: Function, program: Program, dialect: Dialect, given: Components) -> Routine:
@@ -159,13 +160,14 @@ def routine(function: Function, program: Program, dialect: Dialect, given: Compo
     names |= {name: f"m->c{first}[{LANE}]" for name, first in direct.items()}
     text = _Text(dialect, names, given)
     cut = divided(found, dialect.longest)
+    base = None if cut is None else _base(function, program)
     parts = (everything,) if cut is None else cut.parts
     return Routine(
         function.name,
         function.about,
         function.shape,
-        text.body(everything, read) if cut is None else Body((), (), (), read.used),
-        () if cut is None else tuple(text.body(part, survey(part.content)) for part in parts),
+        text.body(everything, read) if cut is None else _lead(text, function, base, read),
+        () if cut is None or base else tuple(text.body(p, survey(p.content)) for p in parts),
         tuple(map(text.lanes, parts)) if dialect.lanes else (),
         0 if cut is None else cut.slots,
         len(function.results),
@@ -174,7 +176,37 @@ def routine(function: Function, program: Program, dialect: Dialect, given: Compo
         function.arguments,
         read.used,
         _checks_pivots(function),
+        "" if base is None else base.name,
     )
+
+
+def _base(function: Function, program: Program) -> Function | None:
+    """An earlier function of the same statements whose results come last, behind arguments."""
+    for other in program.functions:
+        if other.name == function.name:
+            return None
+        ahead = _ahead(function, other)
+        if (
+            other.arguments == function.arguments
+            and other.results == function.results[ahead:]
+            and all(isinstance(e, Read) for e in function.results[:ahead])
+            and other.statements == function.statements
+        ):
+            return other
+    return None
+
+
+def _ahead(function: Function, base: Function | None) -> int:
+    """How many results stand before those of the base."""
+    return 0 if base is None else max(0, len(function.results) - len(base.results))
+
+
+def _lead(text: _Text, function: Function, base: Function | None, read: Survey) -> Body:
+    """What stands beside the parts: the results before those of the base."""
+    results = function.results[: _ahead(function, base)]
+    stores = tuple((e, i) for i, e in enumerate(results))
+    part = Part((), (), stores, content(results))
+    return replace(text.body(part, survey(part.content)), uses=read.used)
 
 
 def _checks_pivots(function: Function) -> bool:

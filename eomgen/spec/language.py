@@ -6,6 +6,8 @@ The reader checks keys with it and the JSON Schema is made from it.
 from collections.abc import Mapping as Map
 from dataclasses import dataclass, field
 
+from eomgen.wanted import FORMULATIONS, INTEGRATORS
+
 
 @dataclass(frozen=True)
 class Leaf:
@@ -211,14 +213,9 @@ INITIAL = {"guess": Key(GUESS, Table(QUANTITY))}
 INITIAL_VALUE = Either((QUANTITY, Items(QUANTITY, least=4, most=4)))  # four of a quaternion
 EQUILIBRIUM = Either((Table(QUANTITY), Items(Table(QUANTITY))))
 
-METHODS = (
-    "semi-euler", "semi-euler-damped", "verlet", "rk4", "dopri5", "rosenbrock2", "midpoint",
-    "dop853", "lsoda", "radau", "cvode",
-)  # fmt: skip
-FORMULATIONS = ("minimal", "nullspace", "multiplier")
 SIMULATION = Record(
     {
-        "method": Key("the integrator", Leaf("choice", METHODS)),
+        "method": Key("the integrator", Leaf("choice", INTEGRATORS)),
         "step": Key("of a method with fixed steps", QUANTITY),
         "formulation": Key(
             "of the equations; a free scene has `minimal`", Leaf("choice", FORMULATIONS)

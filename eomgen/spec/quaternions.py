@@ -8,7 +8,7 @@ from dataclasses import replace
 import sympy as sp
 
 from eomgen.dimension import NONE, TIME
-from eomgen.model import Coordinate, Description, Quaternion, Speed
+from eomgen.model import Coordinate, Description, Quaternion, Speed, quaternion_rates
 from eomgen.spec.formulas import constant, description, text_of
 from eomgen.spec.ledger import Mistake, suggestion
 from eomgen.spec.reader import Entry, Mapping, Node, Scalar, Sequence
@@ -53,8 +53,7 @@ def declared(key: Scalar) -> Iterator[tuple[Scalar, Known]]:
     yield key, Known("quaternion", (), None, key)
     for symbol in own.symbols:  # their rates stand in no formula: the speeds are for that
         yield replace(key, text=symbol.name), Known("coordinate", (symbol,), NONE)
-    for speed in own.speeds:
-        rate = sp.Symbol(f"{speed.name}'", real=True)
+    for speed, rate in zip(own.speeds, own.accelerations, strict=True):
         yield replace(key, text=speed.name), Known("speed", (speed, rate), NONE / TIME)
 
 
@@ -107,11 +106,11 @@ def _rate_of(coordinate: Coordinate) -> Speed:
 
 def _spin_of(quaternion: Quaternion) -> Iterator[Speed]:
     formulas = spin(quaternion.symbols, quaternion.rates)
-    for axis, symbol, formula in zip(AXES, quaternion.speeds, formulas, strict=True):
+    moving = zip(AXES, quaternion.speeds, quaternion.accelerations, formulas, strict=True)
+    for axis, symbol, rate, formula in moving:
         latex = rf"\omega_{{{quaternion.name},{axis}}}"
         about = f"angular velocity about the turned {axis} axis"
         said = Description("rad/s", NONE / TIME, latex, about)
-        rate = sp.Symbol(f"{symbol.name}'", real=True)
         yield Speed(symbol.name, symbol, rate, formula, said)
 
 
@@ -152,13 +151,6 @@ def with_rates(scene: Scene, values: dict[str, sp.Expr]) -> dict[str, sp.Expr]:
         spins = [result.pop(s.name, None) for s in own.speeds]
         parts = [values.get(s.name) for s in own.symbols]
         if None not in parts and None not in spins:
-            result |= dict(zip((r.name for r in own.rates), rates(parts, spins), strict=True))
+            rates = quaternion_rates(parts, spins)
+            result |= {r.name: rate for r, rate in zip(own.rates, rates, strict=True)}
     return result
-
-
-def rates(parts: list[sp.Expr], spins: list[sp.Expr]) -> tuple[sp.Expr, ...]:
-    """e' = e w / 2 with the angular velocity w in the axes after the turn."""
-    e, v, w = parts[0], parts[1:], spins
-    scalar = -sum(a * b for a, b in zip(v, w, strict=True)) / 2
-    vector = [(e * w[i] + v[i - 2] * w[i - 1] - v[i - 1] * w[i - 2]) / 2 for i in range(3)]
-    return (scalar, *vector)
