@@ -189,10 +189,24 @@ def _phases(nodes: Iterable[Node], found: _Search, shapes: _Shapes) -> dict[Node
         if node in phases or found.fixed(node):
             continue
         row = found.home.get(node)
-        members = (node,) if row is None else row
-        odd = int(row is not None)
-        before = [phases[a] for n in members for a in n.operands if a in phases]
-        # the least phase of the right kind that no operand comes after
-        phase = max((p + (p % 2 != odd) for p in before), default=odd)
-        phases.update(dict.fromkeys(members, phase))
+        if row is None:
+            # the least even phase that no operand comes after
+            before = [phases[a] for a in node.operands if a in phases]
+            phases[node] = max((p + p % 2 for p in before), default=0)
+        else:
+            phases.update(dict.fromkeys(row, _phase_of_row(row, found, phases)))
     return phases
+
+
+def _phase_of_row(row: Row, found: _Search, phases: dict[Node, int]) -> int:
+    """The least odd phase behind its packs, which are moved between loops, and not before its rows.
+
+    A pack may hold values of other rows, in other lanes.
+    """
+    least = 1
+    for operand in found.operands[row]:
+        for node in operand:
+            if node in phases:
+                is_ready = operand in found.operands or phases[node] % 2 == 0
+                least = max(least, phases[node] + (phases[node] + 1) % 2 + (0 if is_ready else 2))
+    return least
