@@ -400,6 +400,7 @@ def test_every_shipped_scene_is_measured(name, monkeypatch):
     report = measure.of(study_of(name))
     assert report.sampled.count >= 50
     for row in report.functions:
-        assert row.spreads["double"].worst < 1e-9
+        assert row.spreads["double"].worst < 1e-6  # near a dead point all is lost
+        assert row.spreads["double"].median < 1e-9
     assert report.statements or not report.functions
     assert show.json_of(report)["states"] == report.sampled.count

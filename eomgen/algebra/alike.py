@@ -9,7 +9,7 @@ PLDI 2000; here rows are grown from the results down to the leaves).
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from eomgen.algebra.graph import Node, below
@@ -189,24 +189,24 @@ def _phases(nodes: Iterable[Node], found: _Search, shapes: _Shapes) -> dict[Node
         if node in phases or found.fixed(node):
             continue
         row = found.home.get(node)
+        members = (node,) if row is None else row
         if row is None:
-            # the least even phase that no operand comes after
-            before = [phases[a] for a in node.operands if a in phases]
-            phases[node] = max((p + p % 2 for p in before), default=0)
+            before = [phases[a] + phases[a] % 2 for a in node.operands if a in phases]
         else:
-            phases.update(dict.fromkeys(row, _phase_of_row(row, found, phases)))
+            before = [p for r in found.operands[row] for p in _before(r, found, phases)]
+        # the least phase of the right kind that no operand comes after
+        phase = max(before, default=int(row is not None))
+        phases.update(dict.fromkeys(members, phase))
     return phases
 
 
-def _phase_of_row(row: Row, found: _Search, phases: dict[Node, int]) -> int:
-    """The least odd phase behind its packs, which are moved between loops, and not before its rows.
+def _before(operand: Row, found: _Search, phases: Mapping[Node, int]) -> Iterator[int]:
+    """The first phases in which a row can be computed from an operand.
 
-    A pack may hold values of other rows, in other lanes.
+    The loop that computes a row can go on with it; values of other rows, or of several, are read
+    when their loops have ended.
     """
-    least = 1
-    for operand in found.operands[row]:
-        for node in operand:
-            if node in phases:
-                is_ready = operand in found.operands or phases[node] % 2 == 0
-                least = max(least, phases[node] + (phases[node] + 1) % 2 + (0 if is_ready else 2))
-    return least
+    for node in operand:
+        if node in phases:
+            phase = phases[node]
+            yield phase if operand in found.operands else phase + 1 + phase % 2

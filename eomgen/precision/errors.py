@@ -12,7 +12,7 @@ from eomgen.precision.records import EPSILONS, Array, FunctionErrors, Spread
 
 VANISHING = frozenset(("constraint_residuals", "constraint_rates", "watch"))  # only signs matter
 ZERO = 1e-30  # below this share of the others a result is zero but for fifty digits
-ON_CONSTRAINTS = EPSILONS["float"]  # the same where states are on constraints, rounded to float
+ON_CONSTRAINTS = EPSILONS["float"]  # the same where links or quaternions hold but for rounding
 
 
 def of_function(

@@ -44,7 +44,8 @@ def of(study: Study) -> Report:
     traced: dict[str, Traced] = {}
     if (prepared := bench.prepare()) is not None:
         traced["prepare"] = Traced(prepared, scales_of("prepare", prepared.results, ZERO))
-    zero = ZERO if study.links is None else ON_CONSTRAINTS
+    is_free = study.links is None and not study.model.quaternions
+    zero = ZERO if is_free else ON_CONSTRAINTS
     rows = []
     for function in (f for f in shipped.functions if f.results):
         exact = bench.traced(function)

@@ -239,7 +239,7 @@ class _Text:
             arguments + loads,
             tuple(self.steps(part.statements)),
             tuple((place, self.of(e)) for e, place in part.stores),
-            (*found.used, WORK),
+            (*found.used, *([WORK] if part.loads or part.stores else [])),
         )
 
     def lanes(self, part: Part) -> Lanes:
