@@ -7,9 +7,10 @@ results the others read as `constants`.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 from eomgen.algebra import cancellation, fixed, half_angles
 from eomgen.algebra.arithmetic import evaluate, mpmath_arithmetic
@@ -111,7 +112,8 @@ def _constants(lifted: Iterable[Lifted], free: int) -> tuple[list[Node], dict[No
     wanted = [a for each in lifted for a in (*each.results, *(n for p in each.pivots for n in p))]
     edge = [a for a in below(wanted, stop=lambda a: is_fixed(a, free)) if is_fixed(a, free)]
     computed = [a for a in edge if not is_written(a)]
-    numbers: dict[Node, Expression] = {a: Number(literal(a)) for a in computed if not a.leaves}
+    known = literals([a for a in computed if not a.leaves])
+    numbers: dict[Node, Expression] = {a: Number(value) for a, value in known.items()}
     constants = [a for a in computed if a.leaves]
     return constants, numbers | {a: Read("constants", i) for i, a in enumerate(constants)}
 
@@ -129,24 +131,33 @@ def is_written(node: Node) -> bool:
 
 
 def literal(node: Node) -> Fraction:
-    """A value without arguments as a number, exact or to `LITERAL_DIGITS`.
+    """A value without arguments as a number, exact or to `LITERAL_DIGITS`; raises as `literals`."""
+    return literals([node])[node]
+
+
+def literals(nodes: Sequence[Node]) -> dict[Node, Fraction]:
+    """Values without arguments as numbers, all computed at once.
 
     Raises:
-        UsageError: it is not real and finite.
+        UsageError: one is not real and finite.
     """
-    if node.operator == "number":
-        value: Fraction = node.datum
-        return value
     try:
-        (found,) = evaluate([node], {}, mpmath_arithmetic(LITERAL_DIGITS))
+        found = evaluate(nodes, {}, mpmath_arithmetic(LITERAL_DIGITS))
+        values = [_exact(value) for value in found]
     except (ValueError, ZeroDivisionError, OverflowError) as error:
         raise UsageError(
             f"a formula without coordinates is not real and finite: {error}; "
             "mend the formula or the values of its parameters"
         ) from error
-    mantissa, exponent = abs(found).man_exp
+    pairs = zip(nodes, values, strict=True)
+    return {a: a.datum if a.operator == "number" else value for a, value in pairs}
+
+
+def _exact(value: Any) -> Fraction:
+    """A number of mpmath as the fraction that it is."""
+    mantissa, exponent = abs(value).man_exp
     size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
-    return -size if found < 0 else size
+    return -size if value < 0 else size
 
 
 def _assembled(each: Lifted, given: Mapping[Node, Expression]) -> Function:

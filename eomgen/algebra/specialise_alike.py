@@ -18,7 +18,7 @@ from eomgen.algebra.specialise import (
     ABOUT,
     is_fixed,
     is_written,
-    literal,
+    literals,
     on_graph,
     specialised,
     target_of,
@@ -94,7 +94,8 @@ def _constants(found: Sequence[_Found], free: int, every: bool) -> list[Node]:
 def _prepared(program: Program, found: Sequence[_Found], fixed: Sequence[Node]) -> Program:
     """Functions that read the constants of `prepare`, and numbers that need no parameter."""
     constants = [a for a in fixed if a.leaves]
-    given: dict[Node, Expression] = {a: Number(literal(a)) for a in fixed if not a.leaves}
+    known = literals([a for a in fixed if not a.leaves])
+    given: dict[Node, Expression] = {a: Number(value) for a, value in known.items()}
     given |= {a: Read("constants", i) for i, a in enumerate(constants)}
     functions = tuple(_function(each, given) for each in found)
     prepare = assemble("prepare", ABOUT, (len(constants),), constants) if constants else None
@@ -105,7 +106,8 @@ def _numbers(program: Program, constants: Sequence[Node]) -> dict[Node, Expressi
     """What the constants are with the values of the spec."""
     prepare = assemble("prepare", ABOUT, (len(constants),), constants)
     values = lift(prepare, target_of(program, ())).results
-    return {a: Number(literal(v)) for a, v in zip(constants, values, strict=True)}
+    known = literals(values)
+    return {a: Number(known[v]) for a, v in zip(constants, values, strict=True)}
 
 
 def _open(each: _Found, given: Mapping[Node, Expression]) -> _Found:
