@@ -154,7 +154,7 @@ def test_what_depends_on_the_time_is_in_the_balance(call, name):
     """A pivot that shakes and a hoop that is turned do work, which is no error of the energy."""
     said = simulate(call, name, "--t-end", 1)
     found = re.search(r"energy: worst error (\S+) of \S+ J after work of (\S+) J", said.errors)
-    assert float(found[1]) < 5e-5
+    assert float(found[1]) < 1e-6
     assert abs(float(found[2])) > 1e-4
 
 

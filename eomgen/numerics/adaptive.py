@@ -15,6 +15,7 @@ from eomgen.numerics.records import UNPROJECTED, Array, Engine, Function, Rows, 
 SCIPY = {"dop853": "DOP853", "lsoda": "LSODA", "radau": "Radau"}
 SUNDIALS = "cvode"
 NAMES = (*SCIPY, SUNDIALS)
+HALVINGS, AGREED = 6, 1e-9  # of a step whose work is integrated
 IMPLICIT = ("lsoda", "radau")
 Project = Callable[[float, Array], tuple[Array, int]]
 Dense = Callable[[float], Array]
@@ -126,12 +127,34 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 def work_of(flow: Function | None, start: float, end: float, dense: Dense) -> float:
-    """The integral of the power from start to end."""
+    """The integral of the power from start to end.
+
+    Halved until both halves agree with the whole: forces may change faster than the motion does.
+    """
     if flow is None or end <= start:
         return 0.0
+    return _halved(flow, dense, (start, end), _gauss(flow, dense, start, end), HALVINGS)
+
+
+def _halved(
+    flow: Function, dense: Dense, span: tuple[float, float], whole: tuple[float, float], left: int
+) -> float:
+    """The integral over a span; whole: it by one rule, and that of its size."""
+    middle = (span[0] + span[1]) / 2
+    halves = ((span[0], middle), (middle, span[1]))
+    found = [_gauss(flow, dense, *half) for half in halves]
+    total, size = (sum(values) for values in zip(*found, strict=True))
+    if not abs(total - whole[0]) > AGREED * size or left == 0:
+        return total
+    pairs = zip(halves, found, strict=True)
+    return sum(_halved(flow, dense, half, one, left - 1) for half, one in pairs)
+
+
+def _gauss(flow: Function, dense: Dense, start: float, end: float) -> tuple[float, float]:
+    """The integrals of the power and of its size by one rule."""
     half, middle = (end - start) / 2, (end + start) / 2
-    powers = [flow(t, dense(t))[1] for t in middle + half * NODES]
-    return float(half * np.dot(WEIGHTS, powers))
+    powers = np.array([flow(t, dense(t))[1] for t in middle + half * NODES])
+    return float(half * np.dot(WEIGHTS, powers)), float(half * np.dot(WEIGHTS, np.abs(powers)))
 
 
 def pieces(
