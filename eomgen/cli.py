@@ -150,8 +150,7 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
         style,
         stable,
     )
-    with reporting(format_, files.shown(spec)):
-        made = rendered(study, wish)
+    made = rendered(study, wish)
     if output == files.STANDARD:
         print_files(made)
         return
