@@ -143,7 +143,7 @@ def _halved(
     middle = (span[0] + span[1]) / 2
     halves = ((span[0], middle), (middle, span[1]))
     found = [_gauss(flow, dense, *half) for half in halves]
-    total, size = (sum(values) for values in zip(*found, strict=True))
+    total, size = found[0][0] + found[1][0], found[0][1] + found[1][1]
     if not abs(total - whole[0]) > AGREED * size or left == 0:
         return total
     pairs = zip(halves, found, strict=True)
