@@ -203,7 +203,8 @@ def _read(study: Study, text: str) -> State:
 
 def _remedy(model: Model) -> str:
     names = ", ".join(f"--input {i.name}=0" for i in model.inputs)
-    return f"\ngive the state with --state FILE{f', inputs with {names}' if names else ''}"
+    inputs = f", inputs with {names}" if names else ""
+    return f"\ngive the state with --state FILE or `initial` in the spec{inputs}"
 
 
 def _with_inputs(text: str, inputs: Mapping[str, str]) -> str:
