@@ -48,5 +48,5 @@ def test_the_squeezer_is_where_it_was_published_and_confirmed_twice(multibody):
     found = multibody.squeezer()
     published = np.array([float(multibody.SQUEEZER[name]) for name in found.names])
     np.testing.assert_allclose(found.fine, published, rtol=1e-9)
-    np.testing.assert_allclose(found.coarse, found.fine, rtol=1e-13)
-    np.testing.assert_allclose(found.other, found.fine, rtol=1e-13)
+    np.testing.assert_allclose(found.coarse, found.fine, rtol=3e-13)  # rounding of both runs
+    np.testing.assert_allclose(found.other, found.fine, rtol=3e-13)

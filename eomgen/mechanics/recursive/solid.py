@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 from eomgen.algebra.elementary import BUILD
 from eomgen.algebra.graph import Node
@@ -230,15 +231,15 @@ def _rotation(path: _Path, axis: Vector[Node], angle: Moving) -> Rotation:
 def _upright(path: _Path, axis: Vector[Node], turn: Turned) -> Upright:
     """The axes behind a joint about a skew axis; the body has them from now on."""
     draft, found = path.draft, upright(axis)
-    before = path.turned
+    before, unit = path.turned, partial(rotation.unit, draft.kinematics.algebra)
     path.turned = found.axes if before is None else compose(before, found.axes)
     following = _following(path, turn)
-    ahead = following and towards(
-        found, path.own(rotation.unit(draft.kinematics.algebra, following[1].axis))
-    )
-    if following and ahead:
-        found, draft.ahead[following[0]] = ahead
-        path.turned = found.axes if before is None else compose(before, found.axes)
+    if following is not None:
+        columns = transpose(path.turned)
+        along = scale(axis[0].graph.one * found.sign, unit(turn.axis))
+        ahead = towards(found, columns[0], along, unit(following[1].axis))
+        if ahead is not None:
+            found, draft.ahead[following[0]], path.turned = ahead
     return found
 
 

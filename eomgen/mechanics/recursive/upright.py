@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from eomgen.algebra.arithmetic import FLOAT, evaluate
 from eomgen.algebra.graph import Node, sqrt
-from eomgen.mechanics.vectors import Matrix, Vector, compose
+from eomgen.mechanics.vectors import Matrix, Vector, compose, cross, dot, scale
 
 NEARLY_PARALLEL = 1e-6  # the sine of an angle between axes
 
@@ -57,17 +57,25 @@ def upright(axis: Vector[Node]) -> Upright:
     return Upright(matrix, sign, zero, one)
 
 
-def towards(found: Upright, following: Vector[Node]) -> tuple[Upright, Vector[Node]] | None:
-    """The axes turned about z until the next joint's axis has no part along x, and that axis then.
+def towards(
+    found: Upright, across: Vector[Node], along: Vector[Node], following: Vector[Node]
+) -> tuple[Upright, Vector[Node], Matrix[Node]] | None:
+    """The axes turned about z until the next joint's axis has no part along x.
 
-    following: the next joint's axis in the axes found. None where the two are nearly parallel.
+    With it come that axis in the axes found, and these axes as columns. All three vectors are of
+    one body, so that no constant is made of those of the bodies before: across, along: x and z of
+    the axes before they are turned; following: the next joint's axis. None where it is nearly
+    parallel.
     """
-    x, y, z = following
-    across = sqrt(x * x + y * y)
-    if number(across) < NEARLY_PARALLEL:
+    normal = cross(along, following)
+    size = sqrt(dot(normal, normal))
+    if number(size) < NEARLY_PARALLEL:
         return None
-    turned = replace(found, sine=x / across, cosine=-(y / across))
-    return turned, (x.graph.zero, -across, z)
+    x = scale(1 / size, normal)
+    y, before = cross(along, x), cross(along, across)
+    turned = replace(found, sine=dot(x, before), cosine=dot(x, across))
+    own = (size.graph.zero, -size, dot(along, following))
+    return turned, own, tuple(zip(x, y, along, strict=True))
 
 
 def number(value: Node) -> float:
