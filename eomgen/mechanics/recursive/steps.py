@@ -254,24 +254,15 @@ def blockwise(rotation: Matrix[Node], matrix: Matrix[Node]) -> Matrix[Node]:
 
 
 @dataclass(frozen=True)
-class Rotation:
-    """Any turn: `matrix` has the axes after as its columns; `spin` as for `Turn`."""
+class _ByMatrix:
+    """What a matrix R does to vectors; it has the axes after as its columns."""
 
     matrix: Matrix[Node]
-    rate: Vector[Node]  # e phi'
-    drift: Vector[Node]  # e phi'' with every q'' = 0
-    spin: Vector[Node]
 
     def motion(self, twist: Vector[Node]) -> Vector[Node]:
         """R' w, R' v."""
         back = transposed(self.matrix)
         return (*transform(back, twist[:3]), *transform(back, twist[3:]))
-
-    def accelerated(self, acceleration: Vector[Node]) -> Vector[Node]:
-        """Alpha gains w x e phi' + e phi''."""
-        result = self.motion(acceleration)
-        gained = add(cross(self.spin, self.rate), self.drift)
-        return (*add(result[:3], gained), *result[3:])
 
     def force(self, wrench: Vector[Node]) -> Vector[Node]:
         """R n, R f."""
@@ -288,6 +279,21 @@ class Rotation:
     def bound(self, sizes: Vector[Node]) -> Vector[Node]:
         """The bounds are the same for all axes."""
         return sizes
+
+
+@dataclass(frozen=True)
+class Rotation(_ByMatrix):
+    """Any turn; `spin` as for `Turn`."""
+
+    rate: Vector[Node]  # e phi'
+    drift: Vector[Node]  # e phi'' with every q'' = 0
+    spin: Vector[Node]
+
+    def accelerated(self, acceleration: Vector[Node]) -> Vector[Node]:
+        """Alpha gains w x e phi' + e phi''."""
+        result = self.motion(acceleration)
+        gained = add(cross(self.spin, self.rate), self.drift)
+        return (*add(result[:3], gained), *result[3:])
 
 
 @dataclass(frozen=True)
@@ -302,42 +308,20 @@ class FreeRotation(Rotation):
 
 
 @dataclass(frozen=True)
-class SkewTurn:
+class SkewTurn(_ByMatrix):
     """A constant rotation and a turn about z in one; inertias can be lumped between the two."""
 
     still: Rotation
     turn: Turn
-    matrix: Matrix[Node]
 
     @property
     def spin(self) -> Vector[Node]:
         """The angular velocity before, in the axes after."""
         return self.turn.spin
 
-    def motion(self, twist: Vector[Node]) -> Vector[Node]:
-        """R' w, R' v."""
-        back = transposed(self.matrix)
-        return (*transform(back, twist[:3]), *transform(back, twist[3:]))
-
     def accelerated(self, acceleration: Vector[Node]) -> Vector[Node]:
         """Alpha gains w x e phi' + e phi''."""
         return self.turn.gained(self.motion(acceleration))
-
-    def force(self, wrench: Vector[Node]) -> Vector[Node]:
-        """R n, R f."""
-        return (*transform(self.matrix, wrench[:3]), *transform(self.matrix, wrench[3:]))
-
-    def inertia(self, matrix: Matrix[Node]) -> Matrix[Node]:
-        """Blockwise R m R'."""
-        return blockwise(self.matrix, matrix)
-
-    def rigid(self, body: Rigid) -> Rigid | None:
-        """In the axes before."""
-        return rigid.rotated(body, self.matrix)
-
-    def bound(self, sizes: Vector[Node]) -> Vector[Node]:
-        """The bounds are the same for all axes."""
-        return sizes
 
 
 Motion = tuple[Node, Node, Node, Node]  # of a turn: sine, cosine, rate, drift
@@ -362,7 +346,7 @@ def turned_askew(upright: Matrix[Node], motion: Motion, spin: Vector[Node]) -> S
     none = (spin[0].graph.zero,) * 3
     still = Rotation(upright, none, none, transform(transposed(upright), spin))
     turn = Turn(2, *motion, transform(transposed(matrix), spin))
-    return SkewTurn(still, turn, matrix)
+    return SkewTurn(matrix, still, turn)
 
 
 def forward(steps: Sequence[Step], twist: Vector[Node]) -> Vector[Node]:
