@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
+from functools import cached_property, partial
 from importlib import import_module
 from typing import Any
 
@@ -74,9 +74,23 @@ FLOAT = Arithmetic(
 )
 
 
-def _numpy(name: str) -> Callable[..., Any]:
-    """A function of NumPy, which is imported when it is first called."""
-    return lambda *operands: getattr(import_module("numpy"), name)(*operands)
+class _OfNumPy(Mapping[str, Callable[..., Any]]):
+    """The operators by NumPy, which is imported when the first of them is looked up."""
+
+    @cached_property
+    def _table(self) -> dict[str, Callable[..., Any]]:
+        library, named = import_module("numpy"), (name for name in OPERATORS if name != "pi")
+        table = {name: getattr(library, _NUMPY_NAMES.get(name, name)) for name in named}
+        return {**table, "pi": lambda: math.pi}
+
+    def __getitem__(self, name: str) -> Callable[..., Any]:
+        return self._table[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._table)
+
+    def __len__(self) -> int:
+        return len(self._table)
 
 
 def _array(value: Any) -> Any:
@@ -92,12 +106,9 @@ _NUMPY_NAMES = {
 }  # fmt: skip
 NUMPY = Arithmetic(
     _array,
-    {
-        **{name: _numpy(_NUMPY_NAMES.get(name, name)) for name in OPERATORS if name != "pi"},
-        "pi": lambda: math.pi,
-    },
+    _OfNumPy(),
     PIVOT_EPSILONS * 2.0**-52,
-    lambda condition: bool(_numpy("all")(condition)),
+    lambda condition: bool(import_module("numpy").all(condition)),
     lambda: import_module("numpy").errstate(all="ignore"),
 )
 
@@ -178,14 +189,18 @@ def evaluate(
     """The values of nodes, given those of the leaves, or of any nodes: below these none is read."""
     wanted = list(nodes)
     known: dict[Node, Any] = dict(values)
-    for node in below(wanted, stop=lambda a: a in values):
+    functions = {**arithmetic.functions}  # found once, not at every node
+    for node in below(wanted, stop=known.__contains__):
         if node not in known:
-            known[node] = _value(node, known, arithmetic)
+            if node.operator in OPERATORS:
+                known[node] = functions[node.operator](*[known[a] for a in node.operands])
+            else:
+                known[node] = _special(node, known, arithmetic)
     return [known[node] for node in wanted]
 
 
-def _value(node: Node, known: Mapping[Node, Any], arithmetic: Arithmetic) -> Any:
-    """The value of one node from those of its operands."""
+def _special(node: Node, known: Mapping[Node, Any], arithmetic: Arithmetic) -> Any:
+    """The value of a node that is no operator: a number, a system or a row of its solution."""
     if node.operator == "number":
         return arithmetic.number(node.datum)
     operands = [known[a] for a in node.operands]
@@ -193,9 +208,7 @@ def _value(node: Node, known: Mapping[Node, Any], arithmetic: Arithmetic) -> Any
         return operands[0][node.datum]
     if node.operator == "system":
         return solve_loop(operands, node.datum, arithmetic)
-    if node.operator in ("read", "symbol"):
-        raise KeyError(f"no value is given for {node.datum}")
-    return arithmetic.functions[node.operator](*operands)
+    raise KeyError(f"no value is given for {node.datum}")
 
 
 def solve_loop(entries: list[Any], size: int, arithmetic: Arithmetic) -> list[Any]:

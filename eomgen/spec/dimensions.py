@@ -39,11 +39,19 @@ class Measure:
 
     def __mul__(self, other: "Measure") -> "Measure":
         """The measure of a product."""
+        if not other.unknown:
+            return Measure(self.dimension * other.dimension, self.unknown)
         powers = dict(self.unknown)
         for name, power in other.unknown.items():
             powers[name] = powers.get(name, Fraction(0)) + power
         unknown = {name: power for name, power in powers.items() if power}
         return Measure(self.dimension * other.dimension, unknown)
+
+    def __truediv__(self, other: "Measure") -> "Measure":
+        """The measure of a quotient."""
+        if not other.unknown:
+            return Measure(self.dimension / other.dimension, self.unknown)
+        return self * other**-1
 
     def __pow__(self, power: Fraction | int) -> "Measure":
         """The measure of a power."""
@@ -98,7 +106,8 @@ class _Walk:
         known = self.scene.names.get(name.name)
         dimension = known.dimension if known else None
         unknown = {} if dimension is not None else {name.name: Fraction(1)}
-        return Measure((dimension or NONE) / TIME**name.order, unknown)
+        per = TIME**name.order if name.order else NONE
+        return Measure((dimension or NONE) / per, unknown)
 
     def agreed(self, trees: tuple[Tree, ...]) -> Measure | None:
         """The measure that all terms have; the first that has one speaks for the others."""
@@ -120,7 +129,7 @@ class _Walk:
         for side, measure in measures:
             if measure is None:
                 return None
-            result = result * measure**side
+            result = result * measure if side > 0 else result / measure
         return result
 
     def power(self, base: Tree, exponent: Tree) -> Measure | None:
@@ -218,7 +227,7 @@ def check(scene: Scene) -> dict[str, Dimension]:
 
 def _infer(met: list[Agreement]) -> dict[str, Dimension]:
     """The names that follow from agreements in which they are, one by one, the only unknown."""
-    quotients = [a.first * a.second**-1 for a in met]
+    quotients = [a.first / a.second for a in met if a.first.unknown or a.second.unknown]
     users: dict[str, list[Measure]] = {}
     for quotient in quotients:
         for name in quotient.unknown:
@@ -236,6 +245,8 @@ def _infer(met: list[Agreement]) -> dict[str, Dimension]:
 
 def _known(measure: Measure, found: Mapping[str, Dimension]) -> Measure:
     """The measure with the dimensions found so far put in."""
+    if not measure.unknown:
+        return measure
     result = Measure(measure.dimension)
     for name, power in measure.unknown.items():
         factor = Measure(found[name]) if name in found else Measure(NONE, {name: Fraction(1)})
@@ -246,7 +257,7 @@ def _known(measure: Measure, found: Mapping[str, Dimension]) -> Measure:
 def _compare(agreement: Agreement, found: Mapping[str, Dimension]) -> None:
     """Raise `Mistake` where two measures differ."""
     first, second = _known(agreement.first, found), _known(agreement.second, found)
-    quotient = first * second**-1
+    quotient = first / second
     if quotient.unknown or quotient.dimension == NONE:
         return
     text, what = agreement.second_span.text, agreement.first_text

@@ -1,14 +1,17 @@
 """`inertia`: a scalar in the plane, the nine entries of a symmetric tensor in solid space."""
 
+from fractions import Fraction
 from itertools import combinations
 
 import sympy as sp
 
 from eomgen.dimension import LENGTH, MASS
-from eomgen.spec.formulas import scalar, tree_of, value_of
+from eomgen.spec.formulas import scalar_tree, tree_of, value_of
 from eomgen.spec.ledger import Mistake, Spot
+from eomgen.spec.lower import as_fraction, is_negative
 from eomgen.spec.reader import Node, Sequence
 from eomgen.spec.scope import Scene, Wanted
+from eomgen.spec.syntax import Tree
 
 INERTIA = MASS * LENGTH**2
 ORDER = {  # number of entries given -> which of them stands where, row by row
@@ -21,14 +24,14 @@ def inertia(name: str, node: Node, scene: Scene) -> tuple[sp.Expr, ...]:
     """One scalar or nine entries; raises `Mistake` where no body can have them."""
     what = f"the inertia of '{name}'"
     nodes = _entries(node, scene, what)
-    entries = [
-        scalar(n, scene, Wanted("inertia", what, INERTIA)) if n else sp.S.Zero for n in nodes
-    ]
-    values = [value_of(tree_of(n, scene), scene) if n else sp.S.Zero for n in nodes]
+    # the six entries of a tensor fill nine places
+    read = {n: _entry(n, scene, what) for n in dict.fromkeys(nodes)}
+    entries = [read[n][1] for n in nodes]
+    values = {n: value_of(tree, scene) if tree else zero for n, (tree, zero) in read.items()}
     if len(entries) == 9:
         _check_symmetric(entries, node, what)
-    if all(value is not None for value in values):
-        check_possible([v for v in values if v is not None], node, what)
+    if all(value is not None for value in values.values()):
+        check_possible([v for n in nodes if (v := values[n]) is not None], node, what)
     return tuple(entries)
 
 
@@ -47,6 +50,14 @@ def _entries(node: Node, scene: Scene, what: str) -> tuple[Node | None, ...]:
     return tuple(None if at is None else items[at] for at in ORDER[len(items)])
 
 
+def _entry(node: Node | None, scene: Scene, what: str) -> tuple[Tree | None, sp.Expr]:
+    """One entry with its tree; zero where nothing is given."""
+    if node is None:
+        return None, sp.S.Zero
+    tree = tree_of(node, scene)
+    return tree, scalar_tree(tree, scene, Wanted("inertia", what, INERTIA))
+
+
 def _check_symmetric(entries: list[sp.Expr], node: Node, what: str) -> None:
     for row, column in combinations(range(3), 2):
         if entries[3 * row + column] != entries[3 * column + row]:
@@ -56,17 +67,29 @@ def _check_symmetric(entries: list[sp.Expr], node: Node, what: str) -> None:
 
 def check_possible(values: list[sp.Expr], spot: Spot, what: str) -> None:
     """Raise `Mistake` unless tr(J)/2 - J, the second moments of the mass, is semidefinite."""
-    if any(values[i].is_negative for i in range(0, len(values), 4)):
+    if any(is_negative(values[i]) for i in range(0, len(values), 4)):
         raise Mistake(spot, "E504", f"{what} is negative")
     if len(values) == 1:
         return
-    tensor = sp.Matrix(3, 3, values)
-    moments = sp.eye(3) * tensor.trace() / 2 - tensor
+    numbers = [as_fraction(value) for value in values]
+    half = (numbers[0] + numbers[4] + numbers[8]) / 2
+    moments = [[half * int(i == j) - numbers[3 * i + j] for j in range(3)] for i in range(3)]
     minors = (
-        moments.extract(list(rows), list(rows)).det()
+        _determinant([[moments[i][j] for j in rows] for i in rows])
         for size in (1, 2, 3)
         for rows in combinations(range(3), size)
     )
-    if any(minor.is_negative for minor in minors):
+    if any(is_negative(minor) for minor in minors):
         message = f"{what} belongs to no body: one principal value exceeds the sum of the others"
         raise Mistake(spot, "E505", message)
+
+
+def _determinant(rows: list[list[Fraction | sp.Expr]]) -> Fraction | sp.Expr:
+    """By the entries of the first row and their minors."""
+    if not rows:
+        return Fraction(1)
+    first, *others = rows
+    return sum(
+        (-1) ** j * entry * _determinant([[*row[:j], *row[j + 1 :]] for row in others])
+        for j, entry in enumerate(first)
+    )

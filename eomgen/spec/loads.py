@@ -7,7 +7,7 @@ import sympy as sp
 
 from eomgen.dimension import ENERGY, FORCE, LENGTH, NONE, TIME, Dimension
 from eomgen.model import Damper, Drive, Energy, Force, Moment, Spring
-from eomgen.spec.formulas import scalar, tree_of, vector
+from eomgen.spec.formulas import scalar, scalar_tree, tree_of, vector
 from eomgen.spec.ledger import CONSEQUENCE, Mistake
 from eomgen.spec.names import WORLD
 from eomgen.spec.places import body_name, pair, place_name
@@ -101,8 +101,8 @@ def _path(
 def _along(name: str, keys: Mapping, scene: Scene) -> tuple[sp.Expr, By]:
     """The formula that a load acts along, and its tree."""
     node = node_of(keys, "along")
-    formula = scalar(node, scene, Wanted("elongation", f"the elongation of {name}"))
     tree = tree_of(node, scene)
+    formula = scalar_tree(tree, scene, Wanted("elongation", f"the elongation of {name}"))
     if all(scene.names[n.name].kind != "coordinate" for n in names(tree)):
         raise Mistake(node, "E510", f"'{tree.span.text}' moves with no coordinate")
     return formula, ((tree, 1),)

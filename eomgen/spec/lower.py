@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 
 import sympy as sp
 
@@ -23,7 +24,7 @@ from eomgen.spec.syntax import (
 
 MOST_BITS = 2048
 MOST_EXPONENT = 64
-NOT_FINITE = (sp.nan, sp.zoo, sp.oo, -sp.oo)
+NOT_REAL = frozenset((sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I))
 
 LARGEST_ANGLE = 2.0**53  # a double beyond it has no digit left for the angle
 LARGEST_EXPONENT = 700.0  # exp(-700) is still a double with all its digits
@@ -90,10 +91,10 @@ def _lowered(tree: Tree, where: Lowering) -> Lowered:
     found = _combined(tree, where)
     expression = found.expression
     _check_estimate(found.estimate, tree)
-    if expression.has(*NOT_FINITE, sp.I):
-        raise _no_value(tree)
     if isinstance(expression, sp.Rational):
         return Lowered(expression, _checked_number(expression, tree))
+    if not NOT_REAL.isdisjoint(sp.preorder_traversal(expression)):
+        raise _no_value(tree)
     if found.estimate is not None and expression.is_extended_real is False:
         raise _no_value(tree)
     return found
@@ -143,7 +144,7 @@ def _combined(tree: Tree, where: Lowering) -> Lowered:
             return _name(tree, where)
         case Sum(terms, _):
             parts = [(sign, _lowered(term, where)) for sign, term in terms]
-            total = sp.Add(*(sign * part.expression for sign, part in parts))
+            total = sp.Add(*(_times_sign(sign, part.expression) for sign, part in parts))
             return Lowered(total, _constant([p for _, p in parts], lambda x: _signed(parts, x)))
         case Product(factors, _):
             return _product(factors, where)
@@ -180,10 +181,15 @@ def _product(factors: tuple[tuple[int, Tree], ...], where: Lowering) -> Lowered:
         if side < 0 and part.expression == 0:
             raise Mistake(factor.span, "E203", f"division by '{factor.span.text}', which is zero")
         estimate = _constant([result, part], _times if side > 0 else _over)
-        result = Lowered(result.expression * part.expression**side, estimate)
+        expression = part.expression if side > 0 else part.expression**side
+        result = Lowered(result.expression * expression, estimate)
         if isinstance(result.expression, sp.Rational):
             result = Lowered(result.expression, _checked_number(result.expression, factor))
     return result
+
+
+def _times_sign(sign: int, expression: sp.Expr) -> sp.Expr:
+    return expression if sign > 0 else sign * expression
 
 
 def _times(values: list[float]) -> float:
@@ -303,6 +309,17 @@ def is_vector(tree: Tree, where: Lowering) -> bool:
         case Power(base, _, _):
             return is_vector(base, where)
     return False
+
+
+def as_fraction(value: sp.Expr) -> Fraction | sp.Expr:
+    """A rational number as the Fraction that Python computes with; any other as it is."""
+    return Fraction(int(value.p), int(value.q)) if isinstance(value, sp.Rational) else value
+
+
+def is_negative(value: Fraction | sp.Expr) -> bool:
+    """Whether a constant is known to be negative; SymPy's deductions are slow for a number."""
+    found = as_fraction(value)
+    return found < 0 if isinstance(found, Fraction) else bool(found.is_negative)
 
 
 def is_constant(tree: Tree) -> bool:

@@ -5,8 +5,9 @@ import sympy as sp
 from eomgen.dimension import LENGTH, MASS, NONE
 from eomgen.model import Body, Frame, Place, Point, Quaternion, Turn
 from eomgen.spec import inertias, quaternions
-from eomgen.spec.formulas import description, scalar, tree_of, value_of, vector
+from eomgen.spec.formulas import description, scalar, scalar_tree, tree_of, value_of, vector
 from eomgen.spec.ledger import CONSEQUENCE, Mistake, shown, suggestion
+from eomgen.spec.lower import is_negative
 from eomgen.spec.reader import Entry, Mapping, Node, Scalar, Sequence
 from eomgen.spec.scope import Scene, Wanted
 
@@ -122,9 +123,10 @@ def _check_keys(name: Scalar, keys: Mapping, scene: Scene) -> None:
 
 
 def _mass(name: str, node: Node, scene: Scene) -> sp.Expr:
-    mass = scalar(node, scene, Wanted("mass", f"the mass of '{name}'", MASS))
-    value = value_of(tree_of(node, scene), scene)
-    if value is not None and value.is_negative:
+    tree = tree_of(node, scene)
+    mass = scalar_tree(tree, scene, Wanted("mass", f"the mass of '{name}'", MASS))
+    value = value_of(tree, scene)
+    if value is not None and is_negative(value):
         raise Mistake(node, "E504", f"the mass of '{name}' is negative")
     return mass
 

@@ -104,7 +104,8 @@ def _record(
         if value is not None:
             entries.append(Entry(entry.key, value))
     _note_missing(node, keys, ledger, path)
-    whole = all(name in {e.key.text for e in entries} for name, k in keys.items() if k.required)
+    kept = {e.key.text for e in entries}
+    whole = all(name in kept for name, key in keys.items() if key.required)
     sound = len(entries) == len(node.entries)
     return Mapping(tuple(entries), node.line, node.column, sound) if whole or not path else None
 
