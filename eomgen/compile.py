@@ -12,6 +12,7 @@ import sympy as sp
 from eomgen import __version__
 from eomgen.algebra import ldl
 from eomgen.algebra.assemble import assemble
+from eomgen.algebra.derive import gradient
 from eomgen.algebra.graph import Node
 from eomgen.dimension import NONE, TIME, Dimension
 from eomgen.mechanics import (
@@ -128,6 +129,17 @@ class Machine:
 
     def _total(self, shares: Sequence[Contribution[Node]]) -> Node:
         return sum((s.value for s in shares), self.kinematics.algebra.number(0))
+
+    @cached_property
+    def momenta(self) -> tuple[Node, ...]:
+        """dT/du."""
+        return tuple(gradient(self.energy[0], self.speeds))
+
+    @cached_property
+    def free_accelerations(self) -> tuple[Node, ...]:
+        """u' as free symbols, for identities that hold whatever they are."""
+        graph = self.kinematics.algebra.number(0).graph
+        return tuple(graph.symbol(f"{s.name}'") for s in speeds.symbols(self.model))
 
     @cached_property
     def rows(self) -> tuple[Row[Node], ...]:

@@ -187,16 +187,21 @@ def evaluate(
     nodes: Iterable[Node], values: Mapping[Node, Any], arithmetic: Arithmetic
 ) -> list[Any]:
     """The values of nodes, given those of the leaves, or of any nodes: below these none is read."""
-    wanted = list(nodes)
-    known: dict[Node, Any] = dict(values)
+    wanted, known = list(nodes), dict(values)
+    complete(known, wanted, arithmetic)
+    return [known[node] for node in wanted]
+
+
+def complete(known: dict[Node, Any], wanted: Iterable[Node], arithmetic: Arithmetic) -> None:
+    """Add to what is known the values of more nodes, and of everything on the way to them."""
     functions = {**arithmetic.functions}  # found once, not at every node
     for node in below(wanted, stop=known.__contains__):
         if node not in known:
-            if node.operator in OPERATORS:
-                known[node] = functions[node.operator](*[known[a] for a in node.operands])
-            else:
+            function = functions.get(node.operator)
+            if function is None:
                 known[node] = _special(node, known, arithmetic)
-    return [known[node] for node in wanted]
+            else:
+                known[node] = function(*[known[a] for a in node.operands])
 
 
 def _special(node: Node, known: Mapping[Node, Any], arithmetic: Arithmetic) -> Any:

@@ -120,10 +120,10 @@ def pullback(
     values = [value for value, _ in weighted]
     for top in reversed(below(values, stop=lambda a: a in ends or not a.leaves & wanted)):
         adjoint = adjoints.get(top, zero)
-        if top in ends or adjoint is zero:
+        if top in ends or adjoint is zero or not top.operands:
             continue
-        for index, operand in enumerate(top.operands):
+        for operand, rule in zip(top.operands, rules[top.operator], strict=True):
             if operand.leaves & wanted:
-                share = rules[top.operator][index](top, *top.operands, adjoint)
-                adjoints[operand] = adjoints.get(operand, zero) + share
+                share = rule(top, *top.operands, adjoint)
+                adjoints[operand] = adjoints[operand] + share if operand in adjoints else share
     return [adjoints.get(variable, zero) for variable in variables]

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import isfinite
 from typing import Any
 
 import sympy as sp
 
-from eomgen.algebra.arithmetic import FLOAT, NUMPY, Arithmetic, evaluate
+from eomgen.algebra.arithmetic import FLOAT, NUMPY, Arithmetic, complete
 from eomgen.algebra.closed import Evaluation
 from eomgen.algebra.graph import Node
 from eomgen.algebra.normal import Form
@@ -28,10 +28,15 @@ class Bench:
     machine: Machine
     leaves: dict[Node, Any]
     arithmetic: Arithmetic
+    known: dict[Node, Any] = field(default_factory=dict)  # every value is computed once
+
+    def __post_init__(self) -> None:
+        self.known.update(self.leaves)
 
     def nodes(self, nodes: Sequence[Node]) -> list[Any]:
         """Values of graph nodes."""
-        return evaluate(nodes, self.leaves, self.arithmetic)
+        complete(self.known, nodes, self.arithmetic)
+        return [self.known[node] for node in nodes]
 
     def forms(self) -> Callable[[Form], Any]:
         """A function that evaluates closed forms; every symbol has the value of its node."""
@@ -59,8 +64,9 @@ def benches(machine: Machine, samples: Samples) -> States:
     """(the scene, accelerations of the speeds) at each of the samples; large scenes at all."""
     if len(machine.kinematics.algebra.number(0).graph.nodes) <= LARGEST_SINGLY:
         return singly(machine, samples, FLOAT, samples.count)
-    everything = _bench(machine, samples.arguments(), NUMPY)
-    return [(everything, [NUMPY.number(column) for column in samples.accelerations])]
+    columns = [NUMPY.number(column) for column in samples.accelerations]
+    everything = _bench(machine, samples.arguments(), columns, NUMPY)
+    return [(replace(everything, known=samples.known), columns)]
 
 
 def singly(
@@ -72,16 +78,20 @@ def singly(
             name: [column[i] for column in columns] for name, columns in samples.arguments().items()
         }
         accelerations = [arithmetic.number(column[i]) for column in samples.accelerations]
-        yield _bench(machine, arguments, arithmetic), accelerations
+        yield _bench(machine, arguments, accelerations, arithmetic), accelerations
 
 
 def _bench(
-    machine: Machine, arguments: Mapping[str, Sequence[Any]], arithmetic: Arithmetic
+    machine: Machine,
+    arguments: Mapping[str, Sequence[Any]],
+    accelerations: Sequence[Any],
+    arithmetic: Arithmetic,
 ) -> Bench:
     leaves = {
         leaf: arithmetic.number(arguments[leaf.datum.argument][leaf.datum.index])
         for leaf in machine.leaves
     }
+    leaves |= zip(machine.free_accelerations, accelerations, strict=True)
     return Bench(machine, leaves, arithmetic)
 
 

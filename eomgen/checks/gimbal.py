@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import degrees, pi
+from math import atan2, degrees, hypot, pi
 
-import numpy as np
+import sympy as sp
 
 from eomgen.checks.samples import constants, number
+from eomgen.mechanics.vectors import cross, dot
 from eomgen.model import Body, Coordinate, Model, Turn
 
 NEAR = 5 * pi / 180  # rad from the singular angle
@@ -35,15 +36,19 @@ def _of_body(model: Model, body: Body) -> Iterator[str]:
 
 def _zeros(*turns: object) -> list[float]:
     """The angles in (-pi, pi] at which the determinant vanishes; it is A + B sin q + C cos q."""
-    axes = [np.array([float(x) for x in t.axis]) for t in turns if isinstance(t, Turn)]
-    a, b, c = (axis / np.linalg.norm(axis) for axis in axes)
-    normal = np.cross(b, c)  # across b: R(b, q) n = cos(q) n + sin(q) b x n
-    cosine, sine = float(a @ normal), float(a @ np.cross(b, normal))
-    size = float(np.hypot(cosine, sine))
-    if size < 1e-12:
+    a, b, c = (_unit(t.axis) for t in turns if isinstance(t, Turn))
+    normal = cross(b, c)  # across b: R(b, q) n = cos(q) n + sin(q) b x n
+    cosine, sine = dot(a, normal), dot(a, cross(b, normal))
+    if hypot(cosine, sine) < 1e-12:
         return []  # two neighbouring axes are parallel: not a matter of the angle
-    root = float(np.arctan2(-cosine, sine))
+    root = atan2(-cosine, sine)
     return sorted({round(r - 2 * pi if r > pi else r, 12) for r in (root, root + pi)})
+
+
+def _unit(axis: tuple[sp.Expr, ...]) -> tuple[float, ...]:
+    """The axis with length 1."""
+    numbers = [float(x) for x in axis]
+    return tuple(x / hypot(*numbers) for x in numbers)
 
 
 def _near(model: Model, body: Body, middle: Coordinate, zeros: list[float]) -> Iterator[str]:

@@ -71,7 +71,7 @@ def balance_terms(machine: Machine) -> list[Node]:
 
 def inertial_energy(machine: Machine) -> Node:
     """sum p (u - y) - T: the kinetic energy, but where it depends on the time explicitly."""
-    return dot(_momenta(machine), relative_speeds(machine)) - machine.energy[0]
+    return dot(machine.momenta, relative_speeds(machine)) - machine.energy[0]
 
 
 def flow(machine: Machine) -> tuple[Node, Node]:
@@ -88,16 +88,10 @@ def flow(machine: Machine) -> tuple[Node, Node]:
     return inertial_energy(machine) + potential, total
 
 
-def _momenta(machine: Machine) -> list[Node]:
-    """p = dT/du."""
-    algebra = machine.kinematics.algebra
-    return gradient(machine.energy[0], [algebra.of(s) for s in speeds.symbols(machine.model)])
-
-
 def _explicit_terms(machine: Machine) -> list[Node]:
     """dT/dt at constant q and u, and p dy/dt: zero where nothing depends on the time."""
     algebra, one = machine.kinematics.algebra, machine.kinematics.algebra.number(1)
-    pairs = zip(_momenta(machine), _explicit(machine), strict=True)
+    pairs = zip(machine.momenta, _explicit(machine), strict=True)
     return [algebra.along(machine.energy[0], {TIME: one}), *(p * e for p, e in pairs)]
 
 

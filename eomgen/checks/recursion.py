@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from functools import reduce
 from typing import Any
 
-from eomgen.algebra.arithmetic import evaluate, mpmath_arithmetic
+from eomgen.algebra.arithmetic import mpmath_arithmetic
 from eomgen.algebra.derive import direction, gradient
 from eomgen.algebra.graph import Node
 from eomgen.checks.agreement import (
@@ -30,7 +30,7 @@ from eomgen.checks.evaluation import Bench, benches, over, singly
 from eomgen.checks.samples import Samples
 from eomgen.compile import Machine
 from eomgen.errors import CheckError, UsageError
-from eomgen.mechanics import efforts, speeds, virtual_work
+from eomgen.mechanics import efforts, virtual_work
 from eomgen.mechanics.recursive import loads, recursion
 from eomgen.mechanics.recursive.engine import Engine
 
@@ -39,9 +39,8 @@ PIVOT = 1e-12  # of the size of the inertia that it is a part of
 
 @dataclass(frozen=True)
 class Rows:
-    """For each coordinate the terms of one derivation and the other's residual at given q''."""
+    """For each coordinate the terms of one derivation and the other's residual at free u'."""
 
-    accelerations: tuple[Node, ...]  # u', free symbols
     terms: tuple[tuple[Node, ...], ...]
     residuals: tuple[Node, ...]
 
@@ -53,7 +52,7 @@ def compare(machine: Machine, engine: Engine, samples: Samples) -> Agreement:
         CheckError: they differ, or no sampled state is regular.
     """
     rows = rows_of(machine, engine)
-    return _held(machine, samples, lambda at, second: difference(rows, at, second), "differ")
+    return _held(machine, samples, lambda at: difference(rows, at), "differ")
 
 
 def identity(machine: Machine, engine: Engine, samples: Samples) -> float:
@@ -69,20 +68,20 @@ def identity(machine: Machine, engine: Engine, samples: Samples) -> float:
     worst = _held(
         machine,
         samples,
-        lambda at, _: _largest(at, at.nodes(left)) / _positive(_largest(at, at.nodes(right))),
+        lambda at: _largest(at, at.nodes(left)) / _positive(_largest(at, at.nodes(right))),
         "are not inverse",
     )
     return worst.error
 
 
 def _held(
-    machine: Machine, samples: Samples, error_of: Callable[[Bench, list[Any]], Any], what: str
+    machine: Machine, samples: Samples, error_of: Callable[[Bench], Any], what: str
 ) -> Agreement:
     """The errors at all states; a large one is decided in 50 digits."""
-    errors, digits = over(benches(machine, samples), error_of), 16
+    errors, digits = over(benches(machine, samples), lambda at, _: error_of(at)), 16
     if max(errors) > FLOAT_TOLERANCE:
         exact = singly(machine, samples, mpmath_arithmetic(DIGITS), DECIDING_STATES)
-        errors, digits = over(exact, error_of), DIGITS
+        errors, digits = over(exact, lambda at, _: error_of(at)), DIGITS
         if max(errors) > EXACT_TOLERANCE:
             raise CheckError(
                 f"Lagrange's equations and the recursion {what}, relative error "
@@ -93,12 +92,11 @@ def _held(
 
 def rows_of(machine: Machine, engine: Engine) -> Rows:
     """Both derivations over free accelerations."""
-    graph = machine.kinematics.algebra.number(0).graph
-    second = tuple(graph.symbol(f"{s.name}'") for s in speeds.symbols(machine.model))
+    second = machine.free_accelerations
     terms = (projected if machine.model.speeds else lagrangian)(machine, second)
     applied = loads.of(machine.kinematics, engine.tree)
     residuals = recursion.inverse_dynamics(engine.tree, True, second, applied)
-    return Rows(second, terms, residuals)
+    return Rows(terms, residuals)
 
 
 def projected(machine: Machine, second: Sequence[Node]) -> tuple[tuple[Node, ...], ...]:
@@ -123,7 +121,7 @@ def lagrangian(machine: Machine, second: Sequence[Node]) -> tuple[tuple[Node, ..
     other = [*efforts.dissipative(kinematics), *efforts.nonconservative(kinematics)]
     return tuple(
         zip(
-            map(moving, gradient(kinetic, rates)),
+            map(moving, machine.momenta),
             (-slope for slope in gradient(kinetic, places)),
             gradient(potential, places),
             (-force for force in loads.generalized(kinematics, other)),
@@ -132,11 +130,10 @@ def lagrangian(machine: Machine, second: Sequence[Node]) -> tuple[tuple[Node, ..
     )
 
 
-def difference(rows: Rows, at: Bench, second: Sequence[Any]) -> Any:
+def difference(rows: Rows, at: Bench) -> Any:
     """The largest difference of two rows over the size of the terms."""
-    leaves = {**at.leaves, **dict(zip(rows.accelerations, second, strict=True))}
     flat = [term for row in rows.terms for term in row]
-    values = evaluate([*flat, *rows.residuals], leaves, at.arithmetic)
+    values = at.nodes([*flat, *rows.residuals])
     width = len(rows.terms[0])
     found = []
     for i, residual in enumerate(values[len(flat) :]):

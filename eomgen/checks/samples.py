@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import sympy as sp
 
+from eomgen.algebra.graph import Node
 from eomgen.mechanics import machine, speeds
 from eomgen.model import Coordinate, Model
 
@@ -17,7 +19,10 @@ COUNT = 50
 
 @dataclass(frozen=True)
 class Samples:
-    """Arguments of a program's functions: for each component, `count` values."""
+    """Arguments of a program's functions: for each component, `count` values.
+
+    known: values of nodes at all samples, which one check leaves to the next.
+    """
 
     count: int
     time: list[float]
@@ -26,6 +31,7 @@ class Samples:
     parameters: list[list[float]]
     accelerations: list[list[float]]  # of the speeds
     exact: Samples | None = None  # the same in 50 digits, where floats are off the constraints
+    known: dict[Node, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def arguments(self) -> dict[str, list[list[float]]]:
         """The components by the names that `program.Read` uses."""
@@ -99,7 +105,9 @@ def bounds(
 
 def number(model: Model, value: sp.Expr, given: Mapping[sp.Symbol, float]) -> sp.Expr:
     """A constant formula of parameters as a number."""
+    if not value.free_symbols:
+        return value
     formulas = {p.symbol: p.formula for p in model.parameters if p.formula is not None}
     while value.free_symbols & formulas.keys():
         value = value.xreplace(formulas)
-    return value.xreplace({s: sp.Float(v) for s, v in given.items()})
+    return value.xreplace({s: sp.Float(given[s]) for s in value.free_symbols & given.keys()})

@@ -257,6 +257,8 @@ def _known(measure: Measure, found: Mapping[str, Dimension]) -> Measure:
 def _compare(agreement: Agreement, found: Mapping[str, Dimension]) -> None:
     """Raise `Mistake` where two measures differ."""
     first, second = _known(agreement.first, found), _known(agreement.second, found)
+    if first == second:
+        return
     quotient = first / second
     if quotient.unknown or quotient.dimension == NONE:
         return

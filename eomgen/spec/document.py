@@ -121,9 +121,7 @@ def _described(known: Model, found: Map[str, Dimension | None]) -> Model:
     """The model with each name's dimension in its description."""
 
     def described(records: tuple[Any, ...]) -> tuple[Any, ...]:
-        return tuple(
-            replace(r, description=replace(r.description, dimension=dimension(r))) for r in records
-        )
+        return tuple(_with(dimension(r), r) for r in records)
 
     def dimension(record: Any) -> Dimension | None:
         # the rate of a coordinate that serves as a speed has no name of its own in the file
@@ -139,6 +137,12 @@ def _described(known: Model, found: Map[str, Dimension | None]) -> Model:
         inputs=described(known.inputs),
         outputs=described(known.outputs),
     )
+
+
+def _with(dimension: Dimension | None, record: Any) -> Any:
+    if record.description.dimension == dimension:
+        return record
+    return replace(record, description=replace(record.description, dimension=dimension))
 
 
 def _table(root: Mapping, section: str) -> tuple[Entry, ...]:

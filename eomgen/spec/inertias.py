@@ -1,14 +1,14 @@
 """`inertia`: a scalar in the plane, the nine entries of a symmetric tensor in solid space."""
 
-from fractions import Fraction
 from itertools import combinations
+from math import lcm
 
 import sympy as sp
 
 from eomgen.dimension import LENGTH, MASS
 from eomgen.spec.formulas import scalar_tree, tree_of, value_of
 from eomgen.spec.ledger import Mistake, Spot
-from eomgen.spec.lower import as_fraction, is_negative
+from eomgen.spec.lower import is_negative
 from eomgen.spec.reader import Node, Sequence
 from eomgen.spec.scope import Scene, Wanted
 from eomgen.spec.syntax import Tree
@@ -71,9 +71,9 @@ def check_possible(values: list[sp.Expr], spot: Spot, what: str) -> None:
         raise Mistake(spot, "E504", f"{what} is negative")
     if len(values) == 1:
         return
-    numbers = [as_fraction(value) for value in values]
-    half = (numbers[0] + numbers[4] + numbers[8]) / 2
-    moments = [[half * int(i == j) - numbers[3 * i + j] for j in range(3)] for i in range(3)]
+    numbers = _proportional(values)
+    trace = numbers[0] + numbers[4] + numbers[8]
+    moments = [[trace * int(i == j) - 2 * numbers[3 * i + j] for j in range(3)] for i in range(3)]
     minors = (
         _determinant([[moments[i][j] for j in rows] for i in rows])
         for size in (1, 2, 3)
@@ -84,11 +84,19 @@ def check_possible(values: list[sp.Expr], spot: Spot, what: str) -> None:
         raise Mistake(spot, "E505", message)
 
 
-def _determinant(rows: list[list[Fraction | sp.Expr]]) -> Fraction | sp.Expr:
+def _proportional(values: list[sp.Expr]) -> list[int] | list[sp.Expr]:
+    """The values times one positive number: integers, where all are rational."""
+    if not all(isinstance(value, sp.Rational) for value in values):
+        return values
+    common = lcm(*(int(value.q) for value in values))
+    return [int(value.p) * (common // int(value.q)) for value in values]
+
+
+def _determinant(rows: list[list[int | sp.Expr]]) -> int | sp.Expr:
     """By the entries of the first row and their minors."""
-    if not rows:
-        return Fraction(1)
     first, *others = rows
+    if not others:
+        return first[0]
     return sum(
         (-1) ** j * entry * _determinant([[*row[:j], *row[j + 1 :]] for row in others])
         for j, entry in enumerate(first)

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from fractions import Fraction
 
 import sympy as sp
 
@@ -311,15 +310,10 @@ def is_vector(tree: Tree, where: Lowering) -> bool:
     return False
 
 
-def as_fraction(value: sp.Expr) -> Fraction | sp.Expr:
-    """A rational number as the Fraction that Python computes with; any other as it is."""
-    return Fraction(int(value.p), int(value.q)) if isinstance(value, sp.Rational) else value
-
-
-def is_negative(value: Fraction | sp.Expr) -> bool:
+def is_negative(value: int | sp.Expr) -> bool:
     """Whether a constant is known to be negative; SymPy's deductions are slow for a number."""
-    found = as_fraction(value)
-    return found < 0 if isinstance(found, Fraction) else bool(found.is_negative)
+    number = int(value.p) if isinstance(value, sp.Rational) else value
+    return number < 0 if isinstance(number, int) else bool(number.is_negative)
 
 
 def is_constant(tree: Tree) -> bool:

@@ -172,16 +172,17 @@ class _Tree:
 
     def take(self, event: yaml.Event) -> None:
         """Work one event into the tree."""
+        if isinstance(event, yaml.CollectionEndEvent):
+            self.put(self.stack.pop().close())
+            return
         assert event.start_mark is not None
         spot = Point(event.start_mark.line + 1, event.start_mark.column + 1)
-        if isinstance(event, yaml.DocumentStartEvent):
-            self.start_document(spot)
-        elif isinstance(event, yaml.AliasEvent):
+        if isinstance(event, yaml.AliasEvent):
             raise Mistake(spot, "E106", f"alias '*{event.anchor}': a spec has no aliases")
-        elif isinstance(event, yaml.NodeEvent):
+        if isinstance(event, yaml.NodeEvent):
             self.start_node(event, spot)
-        elif isinstance(event, yaml.CollectionEndEvent):
-            self.put(self.stack.pop().close())
+        elif isinstance(event, yaml.DocumentStartEvent):
+            self.start_document(spot)
 
     def start_document(self, spot: Point) -> None:
         """Count the documents; one is enough."""

@@ -58,14 +58,20 @@ class Unit:
     @property
     def value(self) -> sp.Expr:
         """The exact factor to SI."""
-        factor = sp.Rational(self.factor.numerator, self.factor.denominator)
-        return factor * sp.pi**self.turns
+        return self.of(Fraction(1))
+
+    def of(self, number: Fraction) -> sp.Expr:
+        """So many of this unit, exactly, in SI."""
+        value = number * self.factor
+        exact = sp.Rational(value.numerator, value.denominator)
+        return exact * sp.pi**self.turns if self.turns else exact
 
 
 def _unit(dimension: Dimension, factor: Fraction | int = 1, turns: int = 0) -> Unit:
     return Unit(Fraction(factor), dimension, turns)
 
 
+ONE = _unit(NONE)
 PREFIXES = {
     "T": 12, "G": 9, "M": 6, "k": 3, "h": 2, "da": 1, "d": -1, "c": -2, "m": -3,
     "u": -6, "\u00b5": -6, "\u03bc": -6, "n": -9, "p": -12,
@@ -147,17 +153,17 @@ def quantity(source: Scalar) -> Quantity | None:
     match = QUANTITY.fullmatch(source.text)
     if match is None:
         return None
-    value = number(source, match["value"].strip())
+    value = fraction(source, match["value"].strip())
     span = Span(source.line, source.column, source.text.strip())
     if match["unit"] is None:
-        return Quantity(value, NONE, "", span)
+        return Quantity(ONE.of(value), NONE, "", span)
     skipped = match.start("unit")
     column = source.column + skipped if source.exact else source.column
     unit = parse_unit(Scalar(match["unit"], source.line, column, source.plain, source.exact))
-    return Quantity(value * unit.value, unit.dimension, match["unit"].strip(), span)
+    return Quantity(unit.of(value), unit.dimension, match["unit"].strip(), span)
 
 
-def number(source: Scalar, text: str) -> sp.Rational:
+def fraction(source: Scalar, text: str) -> Fraction:
     """The exact number; raises `Mistake` past the limits on digits."""
     mantissa, _, exponent = text.lower().partition("e")
     over, _, under = mantissa.partition("/")
@@ -168,14 +174,15 @@ def number(source: Scalar, text: str) -> sp.Rational:
     above, _, below = text.partition("/")
     if below and int(below) == 0:
         raise Mistake(source, "E203", f"{shown(text)} divides by zero")
-    value = Fraction(above) / Fraction(below or 1)
-    return sp.Rational(value.numerator, value.denominator)
+    return Fraction(above) / int(below or 1)
 
 
 def parse_unit(source: Scalar) -> Unit:
     """The unit that the text names; raises `Mistake` with the column."""
     if len(source.text) > MOST_CHARACTERS:
         raise Mistake(source, "E402", f"a unit has at most {MOST_CHARACTERS} characters")
+    if (known := UNITS.get(source.text.strip())) is not None:
+        return known
     reader = _UnitReader(source)
     unit = reader.product(0)
     if reader.rest():
@@ -242,7 +249,7 @@ class _UnitReader:
         token = self.peek()
         if token is None or token["mark"] not in (None, "("):
             raise self.mistake("expected the name of a unit")
-        unit = Unit(Fraction(1), NONE) if token["one"] else self.named(token, depth)
+        unit = ONE if token["one"] else self.named(token, depth)
         self.index = token.end() if token["mark"] is None else self.index
         power = self.peek()
         if power is None or power["mark"] not in ("^", "**"):
