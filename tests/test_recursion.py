@@ -83,7 +83,7 @@ def test_every_method_gives_the_accelerations_of_virtual_work(name, method):
     solved = np.linalg.solve(np.moveaxis(matrix, 2, 0), force.T[..., None])[..., 0].T
     for tree in (machine.tree, lumped(machine.tree)):
         applied = loads.of(machine.kinematics, tree)
-        solution = engine.METHODS[method].solve(machine.kinematics, tree, applied)
+        solution = engine.METHODS[method].solve(engine.Task(machine.kinematics, tree, applied))
         if solution is None:
             continue
         found, _ = solution
@@ -107,7 +107,7 @@ def test_the_engine_takes_the_cheapest_and_says_which(name):
     for tree in (machine.tree, lumped(machine.tree)):
         applied = loads.of(machine.kinematics, tree)
         for method in engine.METHODS.values():
-            solution = method.solve(machine.kinematics, tree, applied)
+            solution = method.solve(engine.Task(machine.kinematics, tree, applied))
             if solution is not None:
                 assert cost.of(solution[0], prepared).total >= chosen.cost.total
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 from eomgen.algebra import cost, ldl
 from eomgen.algebra.cost import Cost
@@ -15,8 +16,14 @@ from eomgen.mechanics.recursive.formulas import Clock
 from eomgen.mechanics.recursive.lumping import lumped
 from eomgen.mechanics.recursive.records import GROUND, Solution, Tree
 from eomgen.mechanics.recursive.recursion import Loads
+from eomgen.mechanics.vectors import Vector
 
-LARGEST_TRIED = 12  # coordinates of a tree for which every combination is built and counted
+LARGEST_TRIED = 12  # coordinates of a tree for which every method is built and counted
+
+
+# operations in space (twists of 6 numbers) and in the plane (3)
+CARRIED = {6: 24, 3: 4}  # a wrench to the base: turned, shifted
+MOVED = {6: 120, 3: 20}  # a body: its wrench, its inertia moved to the base
 
 
 @dataclass(frozen=True)
@@ -38,38 +45,60 @@ class Engine:
         return f"{self.method}{how}, {self.cost.operations} operations, {chain}"
 
 
-Solver = Callable[[Kinematics[Node], Tree, Loads], Solution | None]  # None: not for such a tree
+@dataclass(frozen=True)
+class Task:
+    """A tree, what is applied to it, and what every method needs of both."""
+
+    kinematics: Kinematics[Node]
+    tree: Tree
+    loads: Loads
+
+    @cached_property
+    def wrenches(self) -> list[Vector[Node] | None]:
+        """What every place needs for its terms of velocities, less what is applied to it."""
+        return recursion.wrenches(self.tree, falling=True, loads=self.loads)
 
 
-def by_articulated_bodies(_: Kinematics[Node], tree: Tree, applied: Loads) -> Solution:
+Solver = Callable[[Task], Solution | None]  # None: not for such a tree
+
+
+def by_articulated_bodies(task: Task) -> Solution:
     """M^-1 (Q - h) without M; the wrenches of the bias go to the root with the solution's."""
-    found = articulated.factor(tree)
-    wrenches = recursion.wrenches(tree, falling=True, loads=applied)
-    return articulated.solve(found, applied.forces, wrenches), found.pivots
+    found = articulated.factor(task.tree)
+    return articulated.solve(found, task.loads.forces, task.wrenches), found.pivots
 
 
-def by_composite_inertias(_: Kinematics[Node], tree: Tree, applied: Loads) -> Solution:
+def by_composite_inertias(task: Task) -> Solution:
     """M^-1 (Q - h) by L' D L of M, from the leaves to the root: no fill."""
-    matrix = recursion.mass_matrix(tree)
-    right = [-row for row in recursion.inverse_dynamics(tree, falling=True, loads=applied)]
-    order = tree.order
+    matrix = recursion.mass_matrix(task.tree)
+    bias = recursion.gathered(task.tree, task.wrenches)
+    order = task.tree.order
     rows = [[matrix[i][j] for j in order] for i in order]
-    (solution,), pivots = ldl.solve(rows, [right[i] for i in order])
+    (solution,), pivots = ldl.solve(rows, [task.loads.forces[i] - bias[i] for i in order])
     found = dict(zip(order, solution, strict=True))
     return tuple(found[i] for i in range(len(order))), pivots
 
 
-def factorisation(tree: Tree) -> int:
-    """Operations of L' D L alone: a row for each coordinate above, and the two substitutions."""
+def by_tensions(task: Task) -> Solution | None:
+    """The tensions of rods first."""
+    return rods.solve(task.kinematics, task.tree, task.loads)
+
+
+def with_composite_inertias(tree: Tree) -> int:
+    """About the operations of M, of the bias and of L' D L.
+
+    A coordinate and one above it take a row of L, substitutions, and a wrench carried between.
+    """
     above = [0] * len(tree.places)
     total = 0
     for joint in tree.joints:
-        depth = above[joint.base]
+        depth, size = above[joint.base], tree.places[joint.places[0]].kind.size
         for _ in joint.coordinates:
-            total += depth * (depth + 1) + 5 * depth
+            total += depth * (depth + 6 + CARRIED.get(size, 0))
             depth += 1
         for number in joint.places:
             above[number] = depth
+            total += MOVED.get(size, 0) if tree.places[number].body else 0
     return total
 
 
@@ -81,50 +110,45 @@ def couplings(tree: Tree) -> int:
 
 @dataclass(frozen=True)
 class Method:
-    """A way to the accelerations, and how many operations it takes at least."""
+    """A way to the accelerations, and about how many operations it takes at least."""
 
     solve: Solver
-    least: Callable[[Tree], int]  # zero where no joint stands on another
+    least: Callable[[Tree], int]
 
 
 METHODS: dict[str, Method] = {
     "articulated bodies": Method(by_articulated_bodies, lambda tree: len(tree.order)),
-    "composite inertias and L'DL": Method(by_composite_inertias, factorisation),
-    "tensions of rods": Method(rods.solve, couplings),
+    "composite inertias and L'DL": Method(by_composite_inertias, with_composite_inertias),
+    "tensions of rods": Method(by_tensions, couplings),
 }
 
 
 def choose(kinematics: Kinematics[Node], tree: Tree) -> Engine:
-    """The cheapest of all methods x {lumped, not}, by operations and the longest chain of them.
+    """The cheapest of all methods, by operations and the longest chain of them.
 
-    A large tree is lumped in any case, and a method that must cost more is not built.
+    Inertias are lumped: no tree is known that would take less as it is. On a large tree a method
+    that must cost more is not built.
 
     Raises:
         SingularMassMatrix: a motion has no inertia whatever the state.
     """
     prepared = Clock(kinematics).constant_bits
     applied = loads.of(kinematics, tree)
+    less = lumped(tree)
+    moved = any(a is not b for a, b in zip(less.places, tree.places, strict=True))
+    task = Task(kinematics, less, applied)
     best: Engine | None = None
-    for variant in _variants(tree):
-        for name, method in METHODS.items():
-            if best and name != best.method and _is_hopeless(method, variant, best.cost):
-                continue
-            solution = method.solve(kinematics, variant, applied)
-            if solution is None:
-                continue
-            found = cost.of(solution[0], prepared)
-            if best is None or found.total < best.cost.total:
-                best = Engine(name, variant is not tree, found, variant, *solution)
+    for name, method in METHODS.items():
+        if best and _is_hopeless(method, less, best.cost):
+            continue
+        solution = method.solve(task)
+        if solution is None:
+            continue
+        found = cost.of(solution[0], prepared)
+        if best is None or found.total < best.cost.total:
+            best = Engine(name, moved, found, less, *solution)
     assert best is not None
     return best
-
-
-def _variants(tree: Tree) -> list[Tree]:
-    """The tree with lumped inertias, where there are any, and a small one as it is too."""
-    less = lumped(tree)
-    if all(a is b for a, b in zip(less.places, tree.places, strict=True)):
-        return [tree]
-    return [less, tree] if len(tree.order) <= LARGEST_TRIED else [less]
 
 
 def _is_hopeless(method: Method, tree: Tree, best: Cost) -> bool:
@@ -132,4 +156,5 @@ def _is_hopeless(method: Method, tree: Tree, best: Cost) -> bool:
 
     Then the methods do not differ.
     """
-    return len(tree.order) > LARGEST_TRIED and not 0 < method.least(tree) < best.total
+    alone = all(joint.base == GROUND for joint in tree.joints)
+    return len(tree.order) > LARGEST_TRIED and (alone or method.least(tree) >= best.total)
