@@ -13,7 +13,7 @@ from eomgen.algebra.graph import Node
 from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.recursive import articulated, loads, recursion, rods
 from eomgen.mechanics.recursive.formulas import Clock
-from eomgen.mechanics.recursive.lumping import lumped
+from eomgen.mechanics.recursive.lumping import lumped, moments
 from eomgen.mechanics.recursive.records import GROUND, Solution, Tree
 from eomgen.mechanics.recursive.recursion import Loads
 from eomgen.mechanics.vectors import Vector
@@ -126,27 +126,27 @@ METHODS: dict[str, Method] = {
 def choose(kinematics: Kinematics[Node], tree: Tree) -> Engine:
     """The cheapest of all methods, by operations and the longest chain of them.
 
-    Inertias are lumped: no tree is known that would take less as it is. On a large tree a method
-    that must cost more is not built.
+    Inertias are lumped unless that leaves more of them. On a large tree a method that must cost
+    more is not built.
 
     Raises:
         SingularMassMatrix: a motion has no inertia whatever the state.
     """
     prepared = Clock(kinematics).constant_bits
-    applied = loads.of(kinematics, tree)
     less = lumped(tree)
-    moved = any(a is not b for a, b in zip(less.places, tree.places, strict=True))
-    task = Task(kinematics, less, applied)
+    pays = less is not tree and moments(less) <= moments(tree)
+    chosen = less if pays else tree
+    task = Task(kinematics, chosen, loads.of(kinematics, chosen))
     best: Engine | None = None
     for name, method in METHODS.items():
-        if best and _is_hopeless(method, less, best.cost):
+        if best and _is_hopeless(method, chosen, best.cost):
             continue
         solution = method.solve(task)
         if solution is None:
             continue
         found = cost.of(solution[0], prepared)
         if best is None or found.total < best.cost.total:
-            best = Engine(name, moved, found, less, *solution)
+            best = Engine(name, pays, found, chosen, *solution)
     assert best is not None
     return best
 
