@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 
 from eomgen.algebra import cost, ldl
 from eomgen.algebra.cost import Cost
@@ -14,16 +15,15 @@ from eomgen.mechanics.kinematics import Kinematics
 from eomgen.mechanics.recursive import articulated, loads, recursion, rods
 from eomgen.mechanics.recursive.formulas import Clock
 from eomgen.mechanics.recursive.lumping import lumped, moments
-from eomgen.mechanics.recursive.records import GROUND, Solution, Tree
+from eomgen.mechanics.recursive.records import GROUND, Joint, Solution, Tree
 from eomgen.mechanics.recursive.recursion import Loads
 from eomgen.mechanics.vectors import Vector
 
-LARGEST_TRIED = 12  # coordinates of a tree for which every method is built and counted
-
-
+LARGEST_TRIED = 6  # coordinates of a tree for which every method is built and counted
 # operations in space (twists of 6 numbers) and in the plane (3)
+MOVED = {6: 120, 3: 10}  # a body: its wrench, its inertia moved to the base
 CARRIED = {6: 24, 3: 4}  # a wrench to the base: turned, shifted
-MOVED = {6: 120, 3: 20}  # a body: its wrench, its inertia moved to the base
+ELIMINATED = {6: 200, 3: 20}  # a joint: its row, what is left moved to the base, two substitutions
 
 
 @dataclass(frozen=True)
@@ -84,25 +84,40 @@ def by_tensions(task: Task) -> Solution | None:
     return rods.solve(task.kinematics, task.tree, task.loads)
 
 
-def with_composite_inertias(tree: Tree) -> int:
+def _bodies(tree: Tree) -> int:
+    """About the operations of each body alone, which every method has."""
+    sizes = [place.kind.size for place in tree.places if place.body is not None]
+    return sum(MOVED.get(size, 0) for size in sizes)
+
+
+def least_articulated(tree: Tree) -> int:
+    """About the operations that eliminate every joint."""
+    standing = [joint for joint in tree.joints if joint.base != GROUND]
+    return _bodies(tree) + sum(_per(tree, joint, ELIMINATED) + 8 for joint in standing)
+
+
+def _per(tree: Tree, joint: Joint, operations: Mapping[int, int]) -> int:
+    return operations.get(tree.places[joint.places[0]].kind.size, 0)
+
+
+def least_composite(tree: Tree) -> int:
     """About the operations of M, of the bias and of L' D L.
 
     A coordinate and one above it take a row of L, substitutions, and a wrench carried between.
     """
     above = [0] * len(tree.places)
-    total = 0
+    total = _bodies(tree)
     for joint in tree.joints:
-        depth, size = above[joint.base], tree.places[joint.places[0]].kind.size
+        depth = above[joint.base]
         for _ in joint.coordinates:
-            total += depth * (depth + 6 + CARRIED.get(size, 0))
+            total += depth * (depth + 6 + _per(tree, joint, CARRIED))
             depth += 1
         for number in joint.places:
             above[number] = depth
-            total += MOVED.get(size, 0) if tree.places[number].body else 0
     return total
 
 
-def couplings(tree: Tree) -> int:
+def least_tensions(tree: Tree) -> int:
     """Operations between whatever hangs on the same place, and with what that hangs on."""
     hanging = Counter(joint.base for joint in tree.joints)
     return sum(count * count for base, count in hanging.items() if base != GROUND)
@@ -117,17 +132,17 @@ class Method:
 
 
 METHODS: dict[str, Method] = {
-    "articulated bodies": Method(by_articulated_bodies, lambda tree: len(tree.order)),
-    "composite inertias and L'DL": Method(by_composite_inertias, with_composite_inertias),
-    "tensions of rods": Method(by_tensions, couplings),
+    "articulated bodies": Method(by_articulated_bodies, least_articulated),
+    "composite inertias and L'DL": Method(by_composite_inertias, least_composite),
+    "tensions of rods": Method(by_tensions, least_tensions),
 }
 
 
 def choose(kinematics: Kinematics[Node], tree: Tree) -> Engine:
     """The cheapest of all methods, by operations and the longest chain of them.
 
-    Inertias are lumped unless that leaves more of them. On a large tree a method that must cost
-    more is not built.
+    Inertias are lumped unless that leaves more of them. Of a large tree what promises to be
+    cheapest is built first, and what must cost more is not built.
 
     Raises:
         SingularMassMatrix: a motion has no inertia whatever the state.
@@ -137,11 +152,12 @@ def choose(kinematics: Kinematics[Node], tree: Tree) -> Engine:
     pays = less is not tree and moments(less) <= moments(tree)
     chosen = less if pays else tree
     task = Task(kinematics, chosen, loads.of(kinematics, chosen))
+    promised = _promised(chosen)
     best: Engine | None = None
-    for name, method in METHODS.items():
-        if best and _is_hopeless(method, chosen, best.cost):
+    for name in sorted(METHODS, key=promised.__getitem__):
+        if best and promised[name] >= best.cost.total:
             continue
-        solution = method.solve(task)
+        solution = METHODS[name].solve(task)
         if solution is None:
             continue
         found = cost.of(solution[0], prepared)
@@ -151,10 +167,13 @@ def choose(kinematics: Kinematics[Node], tree: Tree) -> Engine:
     return best
 
 
-def _is_hopeless(method: Method, tree: Tree, best: Cost) -> bool:
-    """Whether a method takes more on a large tree, or no joint stands on another.
+def _promised(tree: Tree) -> Mapping[str, float]:
+    """About the operations of each method; nothing of a small tree, where all are built.
 
-    Then the methods do not differ.
+    Where no joint stands on another, the methods do not differ, and the first is as good as any.
     """
-    alone = all(joint.base == GROUND for joint in tree.joints)
-    return len(tree.order) > LARGEST_TRIED and (alone or method.least(tree) >= best.total)
+    if len(tree.order) <= LARGEST_TRIED:
+        return dict.fromkeys(METHODS, 0)
+    if all(joint.base == GROUND for joint in tree.joints):
+        return {name: inf if i else 0 for i, name in enumerate(METHODS)}
+    return {name: method.least(tree) for name, method in METHODS.items()}
