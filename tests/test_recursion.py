@@ -10,8 +10,8 @@ from trees import BALL, PARALLEL, PLANAR, arm, spatial
 from eomgen import compile, study
 from eomgen.algebra import cost
 from eomgen.algebra.arithmetic import NUMPY, evaluate
-from eomgen.algebra.graph import below
 from eomgen.algebra.ldl import SingularMassMatrix
+from eomgen.algebra.walk import below
 from eomgen.checks import samples
 from eomgen.interpreter import mpmath_arithmetic, run
 from eomgen.mechanics import virtual_work

@@ -10,7 +10,8 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
-from eomgen.algebra.graph import Node, below
+from eomgen.algebra.graph import Node
+from eomgen.algebra.walk import below
 from eomgen.program import OPERATORS
 
 FREE = dict.fromkeys(("number", "read", "symbol", "solved", "pi", "negate"), 0)
