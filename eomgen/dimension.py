@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from operator import add, sub
 
 BASE = ("kg", "m", "s", "A", "K")
 
@@ -16,17 +17,17 @@ class Dimension:
 
     def __mul__(self, other: Dimension) -> Dimension:
         """The dimension of a product."""
-        return Dimension(tuple(a + b for a, b in zip(self.exponents, other.exponents, strict=True)))
+        return Dimension(tuple(map(add, self.exponents, other.exponents)))
 
     def __truediv__(self, other: Dimension) -> Dimension:
         """The dimension of a quotient."""
-        return Dimension(tuple(a - b for a, b in zip(self.exponents, other.exponents, strict=True)))
+        return Dimension(tuple(map(sub, self.exponents, other.exponents)))
 
     def __pow__(self, power: Fraction | int) -> Dimension:
         """The dimension of a power."""
         if power.denominator == 1:
             power = power.numerator
-        return Dimension(tuple(a * power for a in self.exponents))
+        return Dimension(tuple([a * power for a in self.exponents]))
 
     def __str__(self) -> str:
         """SI text such as `kg m^2 s^-2`; `1` for a plain number."""

@@ -88,7 +88,8 @@ def _rate(node: Node, rates: Mapping[Node, Node], rules: Rules) -> Node:
     total = zero = node.graph.zero
     for index, operand in enumerate(node.operands):
         if rates[operand] is not zero:
-            total = total + rules[node.operator][index](node, *node.operands, rates[operand])
+            share = rules[node.operator][index](node, *node.operands, rates[operand])
+            total = share if total is zero else total + share
     return total
 
 

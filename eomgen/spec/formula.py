@@ -158,8 +158,8 @@ class _Parser:
 
     def accept(self, *marks: str) -> Token | None:
         """The next token if it is one of the marks, else None."""
-        token = self.token
-        if token.kind != "mark" or token.text not in marks:
+        token = self.tokens[self.index]
+        if token.text not in marks:
             return None
         self.index += 1
         return token

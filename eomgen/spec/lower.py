@@ -92,7 +92,7 @@ def _lowered(tree: Tree, where: Lowering) -> Lowered:
     _check_estimate(found.estimate, tree)
     if isinstance(expression, sp.Rational):
         return Lowered(expression, _checked_number(expression, tree))
-    if not NOT_REAL.isdisjoint(sp.preorder_traversal(expression)):
+    if not (expression.is_Symbol or NOT_REAL.isdisjoint(sp.preorder_traversal(expression))):
         raise _no_value(tree)
     if found.estimate is not None and expression.is_extended_real is False:
         raise _no_value(tree)

@@ -17,6 +17,7 @@ from eomgen.spec.structure import is_misspelt
 
 MOST_CHARACTERS = 60
 WORLD = "world"  # the axes that are no body's
+WORDS = frozenset((*RESERVED, WORLD))  # of the language
 KINDS = {  # key of the file -> kind of name, number of derivatives it has
     "parameters": ("parameter", 0),
     "coordinates": ("coordinate", 2),
@@ -74,7 +75,7 @@ def check(key: Scalar, names: dict[str, Known]) -> Scalar:
 def check_spelling(key: Scalar) -> None:
     """Raise `Mistake` where the key is no proper name."""
     name = key.text
-    if name in (*RESERVED, WORLD):
+    if name in WORDS:
         raise Mistake(key, "E304", f"'{name}' is a word of the language", "choose another name")
     if not NAME.fullmatch(name) or len(name) > MOST_CHARACTERS:
         hint = "letters, digits and '_', a letter first"
