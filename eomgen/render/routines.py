@@ -249,7 +249,7 @@ class _Text:
     def part(self, part: Part) -> Body:
         """The statements of a part, which read the model and `WORK` where they need them."""
         found, members = survey(part.content), self.given.members
-        placed: Names = {
+        placed: dict[Expression | str, str] = {
             r: IN_MODEL[r.argument].format(members[r.argument][r.index])
             for r in found.reads
             if r.argument in IN_MODEL
