@@ -4,13 +4,14 @@ import random
 from dataclasses import replace
 from functools import cached_property
 
+import numpy as np
 import pytest
 from scenes import LINKED, SHIPPED, SLOW, each, expecting
 from studies import PENDULUM, model, study
 
 from eomgen import compile
 from eomgen.algebra.graph import Node
-from eomgen.checks import agreement, dimensions, power, samples
+from eomgen.checks import agreement, dimensions, evaluation, power, samples
 from eomgen.errors import CheckError
 from eomgen.mechanics import efforts, lagrange
 from eomgen.mechanics.recursive import rigid
@@ -158,6 +159,29 @@ def test_samples_are_seeded_and_in_range() -> None:
     assert first == second
     assert all(0.17 < v < 0.35 for v in first.state[0])
     assert samples.draw(scene, seed=2) != first
+
+
+def test_what_one_check_computes_the_next_one_reads(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(evaluation, "LARGEST_SINGLY", 0)
+    machine, drawn = compile.machine_of(model("skew_arm")), samples.draw(model("skew_arm"))
+    wanted = power.balance_terms(machine)
+    power.balance(machine, drawn)
+    ((again, _),) = evaluation.benches(machine, drawn)
+    ((fresh, _),) = evaluation.benches(machine, samples.draw(model("skew_arm")))
+    for node, kept, value in zip(wanted, again.nodes(wanted), fresh.nodes(wanted), strict=True):
+        assert kept is drawn.known[node]
+        assert np.array_equal(kept, value)
+    assert not replace(drawn, count=drawn.count).known
+
+
+def test_free_accelerations_are_those_of_the_samples(monkeypatch: pytest.MonkeyPatch) -> None:
+    machine, drawn = compile.machine_of(model("skew_arm")), samples.draw(model("skew_arm"))
+    for largest in (0, 10**6):
+        monkeypatch.setattr(evaluation, "LARGEST_SINGLY", largest)
+        states = list(evaluation.benches(machine, drawn))
+        found = [np.vstack(at.nodes(machine.free_accelerations)) for at, _ in states]
+        assert len(states) == (drawn.count if largest else 1)
+        assert np.array_equal(np.hstack(found), drawn.accelerations)
 
 
 def test_a_scene_without_a_regular_state_is_refused() -> None:

@@ -79,6 +79,24 @@ def test_help_imports_nothing_heavy():
     assert run(sys.executable, "-c", HELP).splitlines()[-1] == "imported: []"
 
 
+SMALL = """
+import sys
+from eomgen.cli import main
+sys.argv = ["eomgen", "generate", sys.argv[1], "-t", "c", "-t", "latex", "-o", sys.argv[2]]
+try:
+    main()
+except SystemExit as end:
+    assert end.code == 0
+print("imported:", sorted({"numpy", "scipy"} & sys.modules.keys()))
+"""
+
+
+def test_a_small_scene_is_derived_and_checked_without_numpy(tmp_path):
+    scene = SHIPPED["double_pendulum"]
+    said = run(sys.executable, "-c", SMALL, str(scene), str(tmp_path))
+    assert said.splitlines()[-1] == "imported: []"
+
+
 USAGE = {
     (): "Usage: eomgen",
     ("derife", "a.yaml"): "No such command 'derife'",

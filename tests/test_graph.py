@@ -166,6 +166,11 @@ def test_floats_arrays_and_many_digits_agree(name, leaves):
         assert vectorised == pytest.approx(float(many[0]), rel=1e-14, abs=1e-15)
 
 
+def test_an_arithmetic_on_arrays_has_every_operator():
+    assert {*NUMPY.functions} == {*OPERATORS}
+    assert len(NUMPY.functions) == len(OPERATORS)
+
+
 def test_fifty_digits_are_fifty_digits(leaves):
     _, x, y = leaves
     node = coverage(x, y)

@@ -1,3 +1,5 @@
+import random
+from contextlib import nullcontext
 from hashlib import sha256
 
 import pytest
@@ -8,7 +10,10 @@ from spec_samples import CONSTRAINED, EVERYTHING, FREE, LINKED, SLIDER_PENDULUM,
 from eomgen import spec
 from eomgen.errors import SpecError
 from eomgen.model import Frame, Place, Simulation, Turn
+from eomgen.spec.inertias import check_possible
 from eomgen.spec.language import CONSTRAINT, LANGUAGE
+from eomgen.spec.ledger import Mistake
+from eomgen.spec.reader import Point
 
 ZERO, ONE = sp.S.Zero, sp.S.One
 
@@ -185,6 +190,21 @@ def test_flat_plate_is_a_possible_body_and_less_is_not():
         with pytest.raises(SpecError) as caught:
             read(units.replace("at: P", f"at: P, inertia: {impossible}"))
         assert [f.code for f in caught.value.faults] == ["E505"]
+
+
+@pytest.mark.parametrize("unit", [sp.S.One, sp.pi, sp.Rational(1, 7)])
+def test_an_inertia_is_possible_where_its_second_moments_are_semidefinite(unit):
+    chance, seen = random.Random(4), set()
+    for _ in range(60):
+        xx, yy, zz = (chance.randint(2, 9) for _ in range(3))
+        xy, xz, yz = (chance.randint(-2, 2) for _ in range(3))
+        tensor = sp.Matrix([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        moments = sp.eye(3) * tensor.trace() / 2 - tensor
+        possible = moments.is_positive_semidefinite
+        with nullcontext() if possible else pytest.raises(Mistake, match="belongs to no body"):
+            check_possible([unit * entry for entry in tensor], Point(1, 1), "the inertia of 'b'")
+        seen.add(possible)
+    assert seen == {True, False}
 
 
 def test_scalar_is_a_vector_in_a_line():
