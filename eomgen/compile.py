@@ -136,12 +136,6 @@ class Machine:
         return tuple(gradient(self.energy[0], self.speeds))
 
     @cached_property
-    def free_accelerations(self) -> tuple[Node, ...]:
-        """u' as free symbols, for identities that hold whatever they are."""
-        graph = self.kinematics.algebra.number(0).graph
-        return tuple(graph.symbol(f"{s.name}'") for s in speeds.symbols(self.model))
-
-    @cached_property
     def rows(self) -> tuple[Row[Node], ...]:
         """Every row of the bilateral constraints."""
         return constraints.rows(self.kinematics, speeds.symbols(self.model))

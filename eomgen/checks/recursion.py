@@ -26,7 +26,7 @@ from eomgen.checks.agreement import (
     FLOAT_TOLERANCE,
     Agreement,
 )
-from eomgen.checks.evaluation import Bench, benches, over, singly
+from eomgen.checks.evaluation import Bench, benches, free_accelerations, over, singly
 from eomgen.checks.samples import Samples
 from eomgen.compile import Machine
 from eomgen.errors import CheckError, UsageError
@@ -92,7 +92,7 @@ def _held(
 
 def rows_of(machine: Machine, engine: Engine) -> Rows:
     """Both derivations over free accelerations."""
-    second = machine.free_accelerations
+    second = free_accelerations(machine)
     terms = (projected if machine.model.speeds else lagrangian)(machine, second)
     applied = loads.of(machine.kinematics, engine.tree)
     residuals = recursion.inverse_dynamics(engine.tree, True, second, applied)
