@@ -9,7 +9,7 @@ from functools import cache
 import pytest
 import sympy as sp
 from scenes import FILES, derivation_of, machine_of, model_of, text_of
-from test_notes import compiled
+from test_notes import compiled, is_text
 
 from eomgen import compile
 from eomgen.algebra.closed import Evaluation
@@ -207,15 +207,8 @@ def test_nothing_of_the_user_is_a_macro():
 
 
 def test_the_context_holds_nothing_but_text():
-    def plain(value):
-        if isinstance(value, dict):
-            return all(plain(v) for v in value.values())
-        if isinstance(value, tuple):
-            return all(plain(v) for v in value)
-        return isinstance(value, str | bool)
-
     for context in (latex_context, text_context):
-        assert plain({**context(mixed()), "words": {}})
+        assert is_text({**context(mixed()), "words": {}})
 
 
 # --- multipliers
