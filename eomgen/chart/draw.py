@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from math import inf, isfinite
 from typing import Any
 
 from eomgen.chart.front import front, recommended
-from eomgen.chart.records import OK, Chart, Errors, Point
+from eomgen.chart.records import OK, PRECISIONS, Chart, Errors, Point
 from eomgen.errors import UsageError
 
 # Okabe and Ito: told apart by the colour-blind
@@ -19,7 +19,7 @@ MARKERS = {
     "semi-euler": "v", "semi-euler-damped": "<", "verlet": "^", "rk4": "o", "dopri5": "s",
     "rosenbrock2": "D", "midpoint": "P",
 }  # fmt: skip
-MET = "#eeeeee"
+MET, GREY = "#eeeeee", "#444444"
 LINES = {"f64": "-", "f32": (0, (4, 2))}
 LEGEND = 7  # entries of a line
 LEAST = 1e-17  # errors below it are drawn there: a logarithm has no zero
@@ -98,7 +98,7 @@ def figure(pyplot: Any, chart: Chart) -> Any:
     low, high = axes[0].get_xlim()
     axes[0].set_xlim(low, high * (high / low) ** (STRIP * (len(_failed(chart)) + 0.5)))
     made.suptitle(f"{chart.title}: {chart.horizon:g} s", fontsize=12)
-    _key(made, axes[len(panels) :], _legend(pyplot, chart))
+    _key(made, axes[len(panels) :], [*_kinds(chart), *_signs(chart)])
     return made
 
 
@@ -200,31 +200,33 @@ def _failures(axis: Any, chart: Chart) -> None:
         )  # fmt: skip
 
 
-def _legend(pyplot: Any, chart: Chart) -> list[Any]:
+def _entry(label: str, **style: Any) -> Any:
+    """An entry of the legend."""
+    return import_module("matplotlib.lines").Line2D([], [], label=label, **style)
+
+
+def _kinds(chart: Chart) -> Iterator[Any]:
     """Colours, markers, lines that occur."""
-    line = import_module("matplotlib.lines").Line2D
-    runs = [p.run for p in chart.points]
-    names = [n for n in COLOURS if n in {r.formulation for r in runs}]
-    handles = [line([], [], color=COLOURS[n], linewidth=3, label=n) for n in names]
-    methods = [n for n in MARKERS if n in {p.run.integrator for p in chart.good}]
-    style = {"color": "#444444", "linestyle": ""}
-    handles += [line([], [], marker=MARKERS[n], label=n, **style) for n in methods]
-    if len({r.precision for r in runs}) > 1:
-        handles += [
-            line([], [], color="#444444", linestyle=LINES["f64"], label="double"),
-            line([], [], color="#444444", linestyle=LINES["f32"], label="float"),
-        ]
-    failed = sum(_failed(chart).values())
-    handles += [
-        line([], [], color="black", linewidth=1.6, label="front"),
-        line([], [], marker="o", markersize=10, markerfacecolor="none", color="black",
-             linestyle="", label="recommended"),
-        line([], [], color=MET, linewidth=8, label="target met"),
-        line([], [], color="#888888", linewidth=0.8, linestyle=":", label="error of the reference"),
-        line([], [], marker="x", label=f"failed ({failed})", **style),
-    ]  # fmt: skip
+    formulations = {p.run.formulation for p in chart.points}
+    integrators = {p.run.integrator for p in chart.good}
+    precisions = {p.run.precision for p in chart.points}
+    for name in (n for n in COLOURS if n in formulations):
+        yield _entry(name, color=COLOURS[name], linewidth=3)
+    for name in (n for n in MARKERS if n in integrators):
+        yield _entry(name, marker=MARKERS[name], color=GREY, linestyle="")
+    if len(precisions) > 1:
+        for name, word in PRECISIONS.items():
+            yield _entry(word, color=GREY, linestyle=LINES[name])
+
+
+def _signs(chart: Chart) -> Iterator[Any]:
+    """What else is drawn."""
+    point = {"color": GREY, "linestyle": ""}
+    yield _entry("front", color="black", linewidth=1.6)
+    ring = {"marker": "o", "markersize": 10, "markerfacecolor": "none"}
+    yield _entry("recommended", color="black", linestyle="", **ring)
+    yield _entry("target met", color=MET, linewidth=8)
+    yield _entry("error of the reference", color="#888888", linewidth=0.8, linestyle=":")
+    yield _entry(f"failed ({sum(_failed(chart).values())})", marker="x", **point)
     if any(not p.resolved for p in chart.good):
-        handles.append(
-            line([], [], marker="o", markerfacecolor="white", label="not resolved", **style)
-        )
-    return handles
+        yield _entry("not resolved", marker="o", markerfacecolor="white", **point)
