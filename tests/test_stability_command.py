@@ -206,6 +206,16 @@ def test_contacts_are_left_out_with_words():
     assert any(line.startswith("contacts: this is the motion while no") for line in found.omitted)
 
 
+def test_what_is_shaken_has_no_equilibria():
+    """At rest at t = 0 only: a bisection that takes it for rest finds steps of no meaning."""
+    text = oscillator("4", "0").replace("coordinates:", "prescribed: {w: sin(3*t)}\ncoordinates:")
+    driven = text.replace('at: "[x]"', 'at: "[x + w]"')
+    still, shaken = (found_of(t, integrators=("rk4",)) for t in (text, driven))
+    assert any("equilibri" in word for word in still.looked)
+    assert shaken.looked == ("the start",)
+    assert any("depends on the time" in line for line in shaken.omitted)
+
+
 @pytest.mark.slow
 def test_gimbals_are_named():
     found = found_of(FREE_BODY, integrators=("rk4",))
