@@ -8,10 +8,8 @@ outside a product, a number stands first in a product and last in a sum.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from fractions import Fraction
 from math import isqrt
-from operator import attrgetter
 from typing import Any
 
 from eomgen.program import Read
@@ -381,20 +379,3 @@ def sqrt(a: Node) -> Node:
     """The square root."""
     root = exact_root(a.datum) if a.operator == "number" else None
     return unary("sqrt", a) if root is None else a.graph.number(root)
-
-
-def below(nodes: Iterable[Node], stop: Callable[[Node], bool] | None = None) -> list[Node]:
-    """All nodes that `nodes` are computed from, themselves included, in order of evaluation.
-
-    Operands of a node that satisfies `stop` are not entered.
-    """
-    found = {*nodes}
-    stack = [*found]
-    while stack:
-        node = stack.pop()
-        if stop is None or not stop(node):
-            for operand in node.operands:
-                if operand not in found:
-                    found.add(operand)
-                    stack.append(operand)
-    return sorted(found, key=attrgetter("id"))

@@ -177,9 +177,11 @@ def c(subject: Program | Code) -> dict[str, object]:
     unknown = tuple(v.name for v in program.parameters if v.value is None)
     open_codes = dict(zip(unknown, escaped(unknown, C.reserved), strict=True))
     prepare, constants = context["prepare"], context["constants"]
-    prepared = () if prepare is None else prepare.body.results
+    prepared = () if prepare is None else prepare.parts or (prepare.body,)
     return context | {
-        "prepared": tuple((constants[i].code, text) for i, text in prepared),
+        "prepared": tuple(
+            tuple((constants[i].code, text) for i, text in body.results) for body in prepared
+        ),
         "remarks": code.remarks.lines,
         "defined": code.remarks.constants,
         "fast_trig": code.style.fast_trig,

@@ -32,6 +32,7 @@ from eomgen.render.parts import Part, divided, whole
 COUNTED = {"add": "+", "subtract": "-", "negate": "-", "multiply": "*", "divide": "/"}
 ROWS = ("state", "accelerations", "inputs")  # what differs between the states of a batch
 WAVE_KINDS = {"sin": "sine", "cos": "cosine"}
+IN_MODEL = {"parameters": "m->p.{}", "constants": "m->{}"}  # how parts of functions read it
 WORK = "work"  # the array of values that cross between the parts of a function
 WAVES = "waves"  # the array of sines and cosines of a batch
 
@@ -87,6 +88,7 @@ class Body:
 
     arguments: tuple[Argument, ...]
     steps: tuple[Step, ...]
+    stores: tuple[tuple[int, str], ...]  # slots of `WORK` that are filled, and with what
     results: tuple[tuple[int, str], ...]  # where each goes, and what
     uses: tuple[str, ...]  # which of `READ` and `WORK` are read
 
@@ -144,7 +146,7 @@ class Routine:
     takes: tuple[str, ...]  # which of `ARGUMENTS` a caller passes
     uses: tuple[str, ...]  # which of these are read
     can_fail: bool  # a pivot is checked
-    base: str = ""  # whose parts it shares; their results follow those of the body
+    base: str = ""  # a function that it calls; its results follow those of the body
 
 
 def routine(function: Function, program: Program, dialect: Dialect, given: Components) -> Routine:
@@ -159,15 +161,16 @@ def routine(function: Function, program: Program, dialect: Dialect, given: Compo
     names = names_of(short, read, given, dialect.reserved | own_names(program, short))
     names |= {name: f"m->c{first}[{LANE}]" for name, first in direct.items()}
     text = _Text(dialect, names, given)
-    cut = divided(found, dialect.longest)
-    base = None if cut is None else _base(function, program)
+    cut = divided(found, dialect.longest, function is program.prepare)
+    is_long = cut is not None or len(short.statements) > dialect.repeated
+    base = _base(function, program) if is_long else None
     parts = (everything,) if cut is None else cut.parts
     return Routine(
         function.name,
         function.about,
         function.shape,
-        text.body(everything, read) if cut is None else _lead(text, function, base, read),
-        () if cut is None or base else tuple(text.body(p, survey(p.content)) for p in parts),
+        _lead(text, function, base, read) if cut or base else text.body(everything, read),
+        () if cut is None or base else tuple(map(text.part, parts)),
         tuple(map(text.lanes, parts)) if dialect.lanes else (),
         0 if cut is None else cut.slots,
         len(function.results),
@@ -203,9 +206,9 @@ def _ahead(function: Function, base: Function | None) -> int:
 
 def _lead(text: _Text, function: Function, base: Function | None, read: Survey) -> Body:
     """What stands beside the parts: the results before those of the base."""
-    results = function.results[: _ahead(function, base)]
-    stores = tuple((e, i) for i, e in enumerate(results))
-    part = Part((), (), stores, content(results))
+    ahead = function.results[: _ahead(function, base)]
+    results = tuple((e, i) for i, e in enumerate(ahead))
+    part = Part((), (), (), results, content(ahead))
     return replace(text.body(part, survey(part.content)), uses=read.used)
 
 
@@ -238,9 +241,23 @@ class _Text:
         return Body(
             arguments + loads,
             tuple(self.steps(part.statements)),
-            tuple((place, self.of(e)) for e, place in part.stores),
+            tuple((slot, self.of(e)) for e, slot in part.stores),
+            tuple((place, self.of(e)) for e, place in part.results),
             (*found.used, *([WORK] if part.loads or part.stores else [])),
         )
+
+    def part(self, part: Part) -> Body:
+        """The statements of a part, which read the model and `WORK` where they need them."""
+        found, members = survey(part.content), self.given.members
+        placed: dict[Expression | str, str] = {
+            r: IN_MODEL[r.argument].format(members[r.argument][r.index])
+            for r in found.reads
+            if r.argument in IN_MODEL
+        }
+        placed |= {value.name: f"{WORK}[{slot}]" for value, slot in part.loads}
+        body = replace(self, names={**self.names, **placed}).body(part, found)
+        kept = tuple(a for a in body.arguments if a.source not in (WORK, *IN_MODEL))
+        return replace(body, arguments=kept)
 
     def lanes(self, part: Part) -> Lanes:
         """The statements for many states, without the waves of arguments, which come first."""
@@ -261,7 +278,8 @@ class _Text:
             for name in (both[w] for w in WAVE_KINDS if w in both):
                 read.append(Argument(self.names[name], WAVES, slot, name))
                 slot += 1
-        inside = content([e for s in rest for e in operands(s)] + [e for e, _ in part.stores])
+        given = [e for e, _ in part.stores + part.results]
+        inside = content([e for s in rest for e in operands(s)] + given)
         body = self.body(replace(part, statements=tuple(rest)), survey(inside))
         return Lanes(tuple(waves), replace(body, arguments=body.arguments + tuple(read)))
 
