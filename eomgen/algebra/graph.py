@@ -8,6 +8,7 @@ outside a product, a number stands first in a product and last in a sum.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from fractions import Fraction
 from math import isqrt
 from typing import Any
@@ -76,11 +77,12 @@ class Node:
 
 
 class Graph:
-    """All nodes in the order of their ids, and the one table that makes equal values one node."""
+    """All nodes in the order of their ids, and the tables that make equal values one node."""
 
     def __init__(self) -> None:
         self.nodes: list[Node] = []
         self._table: dict[tuple[Any, ...], Node] = {}
+        self.pairs: defaultdict[str, dict[tuple[Node, Node], Node]] = defaultdict(dict)
         self._leaf_count = 0
         self.zero = self.number(0)
         self.one = self.number(1)
@@ -124,11 +126,11 @@ class Graph:
 
 def binary(operator: str, a: Node, b: Node) -> Node:
     """The node of a binary operator: one look-up."""
-    graph = a.graph
-    key = (operator, a.id, b.id)
-    node = graph._table.get(key)
+    operands = (a, b)
+    table = a.graph.pairs[operator]
+    node = table.get(operands)
     if node is None:
-        node = graph._table[key] = Node(graph, operator, (a, b), a.leaves | b.leaves, None)
+        node = table[operands] = Node(a.graph, operator, operands, a.leaves | b.leaves, None)
     return node
 
 
