@@ -125,18 +125,12 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
     from eomgen.outputs import Wish, rendered
 
     targets = wishes["targets"] or ("latex", "c", "python")
-    functions, integrators = tuple(wishes["functions"]), wishes["integrators"]
-    if wishes["compensated"] and not integrators:
+    if wishes["compensated"] and not wishes["integrators"]:
         raise UsageError("--compensated is how integrators add: say --integrator too")
-    targets += ("c-steps",) if integrators else ()
+    targets += ("c-steps",) if wishes["integrators"] else ()
     with reporting(format_, files.shown(spec)):
-        choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
-        notes = not NOTES.isdisjoint(targets)
-        if wishes["method"] and not notes:
-            raise UsageError("--method is how the notes derive: add -t latex or -t text")
+        choice = _derivation(targets, wishes)
         stable = stability_inputs(targets, wishes)
-        only = () if integrators or wishes["with_stability"] else functions
-        choice = replace(choice, notes=notes, method=wishes["method"], functions=only)
         style = code_style(targets, wishes)
     study = studied(spec, format_, choice)
     wish = Wish(
@@ -144,8 +138,8 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
         wishes["language"],
         wishes["templates"],
         wishes["steps"],
-        functions,
-        integrators,
+        tuple(wishes["functions"]),
+        wishes["integrators"],
         wishes["compensated"],
         style,
         stable,
@@ -156,6 +150,17 @@ def generate(output: str, spec: str, format_: str, force: bool, **wishes: Any) -
         return
     for path in files.write_all(Path(output), made, force=force):
         click.echo(str(path))
+
+
+def _derivation(targets: tuple[str, ...], wishes: dict[str, Any]) -> Wanted:
+    """What `generate` asks of the study."""
+    choice = wanted(wishes["formulation"], wishes["baumgarte"], wishes["step"])
+    notes = not NOTES.isdisjoint(targets)
+    if wishes["method"] and not notes:
+        raise UsageError("--method is how the notes derive: add -t latex or -t text")
+    needs_all = wishes["integrators"] or wishes["with_stability"]
+    only = () if needs_all else tuple(wishes["functions"])
+    return replace(choice, notes=notes, method=wishes["method"], functions=only)
 
 
 @commands.command(epilog=epilog("eomgen check specs/*.yaml", "eomgen check a.yaml --precision"))

@@ -49,7 +49,7 @@ def _steps(
 
 @click.command(
     epilog=epilog(
-        "eomgen chart four_bar.yaml --out charts",
+        "eomgen chart four_bar.yaml --input tau=0 --out charts",
         "eomgen chart double_pendulum.yaml --target-error 1e-6 --integrators rk4,dopri5 --apply",
     )
 )

@@ -11,7 +11,7 @@ from eomgen.algebra.graph import Node, sqrt
 from eomgen.checks import power
 from eomgen.compile import Machine
 from eomgen.compile_contacts import Touching
-from eomgen.mechanics import contacts_motion, multipliers
+from eomgen.mechanics import multipliers
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.contacts import Contact, bilateral
 from eomgen.mechanics.contacts_modes import SPEED, Mode
@@ -79,8 +79,7 @@ def _modes(touching: Touching, stored: Node, supplied: Node) -> Iterator[Functio
     """The same with the friction of sliding contacts, and the force of contacts that move."""
     machine = touching.machine
     for mode in touching.modes:
-        found = contacts_motion.motion(machine, touching.contacts, mode)
-        total = supplied
+        found, total = touching.motions[mode.name], supplied
         for contact in touching.contacts:
             for share in _contact_powers(machine, contact, mode, found):
                 total = total + share

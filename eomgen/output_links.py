@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from eomgen.analysis.cards import Card, Report
 from eomgen.compile import Machine
 from eomgen.formulation import Formulation
@@ -15,11 +17,56 @@ SENTENCES = {
     "es": "Formulación del código generado: {name} ({why}).",
 }
 
+REASONS = {  # language -> (a part of `Formulation.why`, the same in that language)
+    "es": (
+        ("reactions are asked for", "se piden reacciones"),
+        ("it was asked for", "así se ha pedido"),
+        ("`simulate` of the spec asks for it", "lo pide `simulate` en la especificación"),
+        ("contact and flight, over all coordinates", "contacto y vuelo, en todas las coordenadas"),
+        (
+            "stick and slip, over all coordinates",
+            "adherencia y deslizamiento, en todas las coordenadas",
+        ),
+        ("constant rank", "rango constante"),
+        ("the speeds are the rates of (.+)", r"las velocidades independientes son las de \1"),
+        ("the speeds are (.+)", r"las velocidades son \1"),
+        (
+            "(.+) eliminated in closed form, branch (.+)",
+            r"en forma cerrada se eliminan \1, rama \2",
+        ),
+        ("(.+) eliminated in closed form", r"en forma cerrada se eliminan \1"),
+        (
+            "M is singular where the constraints decide: (.+) stands for it",
+            r"M es singular donde deciden las ligaduras: la sustituye \1",
+        ),
+        (
+            "Baumgarte alpha = (.+) was asked for: it injects or removes energy",
+            r"se ha pedido Baumgarte con alfa = \1: aporta o quita energía",
+        ),
+        ("the constraints lose rank inside `range`", "las ligaduras pierden rango en `range`"),
+        ("no bilateral constraint reduces this scene", "ninguna ligadura bilateral la reduce"),
+        ("the constraints hold everything fast", "las ligaduras no dejan moverse nada"),
+    ),
+}
+
+
+def reason(why: str, language: str) -> str:
+    """Why a formulation was chosen; a part without a translation stays as the tool says it."""
+    return "; ".join(_said(part, REASONS.get(language, ())) for part in why.split("; "))
+
+
+def _said(part: str, table: tuple[tuple[str, str], ...]) -> str:
+    for pattern, there in table:
+        found = re.fullmatch(pattern, part)
+        if found:
+            return found.expand(there)
+    return part
+
 
 def links(report: Report, chosen: Formulation, language: str) -> Links:
     """The record of a scene's constraints."""
     freedom = report.freedom
-    said = SENTENCES[language].format(name=chosen.name, why=chosen.why)
+    said = SENTENCES[language].format(name=chosen.name, why=reason(chosen.why, language))
     return Links(
         cards=tuple(_card(card, report) for card in report.cards),
         coordinates=freedom.coordinates,
@@ -53,7 +100,7 @@ def _card(card: Card, report: Report) -> LinkCard:
         rates=card.rates,
         virtual=card.virtual,
         hidden=tuple(relations.get(row) for row in card.rows),
-        growth=() if card.is_holonomic else report.integrability.growth,
+        growth=() if card.is_holonomic or not card.is_bilateral else report.integrability.growth,
         redundant=card.redundant,
     )
 

@@ -1,5 +1,22 @@
 """Right spec files that the tests of the way in read, mutate and compare."""
 
+from eomgen.spec.ledger import Mistake
+from eomgen.spec.reader import Scalar
+
+
+def source(text):
+    """A scalar of a file: its first."""
+    return Scalar(text, 1, 1)
+
+
+def outcome(function, argument):
+    """The result and None, or None and the mistake."""
+    try:
+        return function(argument), None
+    except Mistake as mistake:
+        return None, mistake
+
+
 SLIDER_PENDULUM = r"""eom: 1
 system: {en: Slider with pendulum, es: Masa deslizante con péndulo}
 space: plane

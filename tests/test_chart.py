@@ -11,7 +11,7 @@ from scenes import SHIPPED, study_of, text_of
 from tools import tool
 
 from eomgen import charting, study
-from eomgen.chart import front, make, reference, runs, tables, variants
+from eomgen.chart import draw, front, make, page, reference, runs, tables, variants
 from eomgen.chart.records import Chart, Combination, Errors, Point, Reference, Sweep
 from eomgen.errors import CheckError, UsageError
 from eomgen.simulate_method import Choice
@@ -133,6 +133,36 @@ def test_the_page_draws_itself(pendulums, tmp_path):
         (tmp_path / name).write_text(text, encoding="utf-8")
     run(latex, "-interaction=nonstopmode", "-halt-on-error", "chart.tex", folder=tmp_path)
     assert (tmp_path / "chart.pdf").stat().st_size > 10_000
+    log = (tmp_path / "chart.log").read_text(encoding="utf-8", errors="replace")
+    assert "Warning" not in log
+    assert "Overfull" not in log
+    assert "Output written on chart.pdf (1 page" in log
+
+
+def test_the_page_draws_no_line_without_points():
+    """A panel names the lines that it has; the legend names all, whatever the panels show."""
+    exact, rough = point(1.0, 1e-3), point(2.0, 1e-4, name="dopri5")
+    rough = replace(rough, errors=replace(rough.errors, constraint=1e-9))
+    found = page.context(chart_of([exact, rough]))
+    lines = {p["column"]: p["series"] for p in found["panels"]}
+    both = ["minimal-rk4-f64", "minimal-dopri5-f64"]
+    assert lines == {"positions": both, "rates": both, "constraint": both[1:]}
+    assert [one["key"] for one in found["series"]] == both
+
+
+def test_failures_stand_beside_the_runs_that_succeed():
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    good = [point(10.0**k, 10.0**-k, formulation=name) for k in range(4) for name in draw.COLOURS]
+    failed = [replace(p, status="energy") for p in good]
+    figure = draw.figure(pyplot, chart_of(good + failed))
+    (lost, reached) = [], []
+    for line in figure.axes[0].lines:
+        across = line.get_transform().transform(line.get_xydata())[:, 0]
+        if line.get_marker() in ("x", draw.MARKERS["rk4"]):
+            (lost if line.get_marker() == "x" else reached).extend(across)
+    pyplot.close(figure)
+    assert (len(lost), len(reached) >= len(good)) == (len(failed), True)
+    assert min(lost) > max(reached)
 
 
 def test_outputs_have_errors_of_their_own(pendulums):
@@ -149,9 +179,6 @@ def test_outputs_have_errors_of_their_own(pendulums):
 
 
 def test_the_pictures_are_the_same_each_time(pendulums):
-
-    from eomgen.chart import draw
-
     one, other = draw.drawn(pendulums), draw.drawn(pendulums)
     assert one == other
     assert one["svg"].startswith(b"<?xml")

@@ -6,6 +6,7 @@ from math import acos, atan, atan2, cos, hypot, isclose, pi, sin, sqrt
 
 import pytest
 from scenes import model_of
+from spec_samples import FOUR_BAR
 
 from eomgen.algebra import normal
 from eomgen.analysis import equilibrium_find
@@ -134,23 +135,7 @@ bodies: {skate: {mass: m, inertia: J, at: "[x, y]", angle: theta}}
 forces: [{on: skate, force: "[F, m*g]"}]
 constraints: {edge: {nonholonomic: "x'*sin(theta) - y'*cos(theta) = 0"}}
 """,
-    "four_bar": """
-parameters: {a: 0.20 m, b: 0.50 m, c: 0.40 m, e: 0.45 m, rho: 1.2 kg/m, g: 9.81 m/s^2}
-coordinates: {q1: rad, q2: {unit: rad, role: linked}, q3: {unit: rad, role: linked}}
-inputs: {tau: N*m}
-points:
-  A: [0, 0]
-  D: [e, 0]
-  B: A + a*[cos(q1), sin(q1)]
-  C: B + b*[cos(q2), sin(q2)]
-  Cr: D + c*[cos(q3), sin(q3)]
-bodies:
-  crank: {rod: [A, B], mass: rho*a}
-  coupler: {rod: [B, C], mass: rho*b}
-  rocker: {rod: [D, Cr], mass: rho*c}
-moments: [{on: crank, moment: tau}]
-constraints: {loop: {holonomic: C = Cr, reaction: pin_C}}
-""",
+    "four_bar": FOUR_BAR.removeprefix(FOUR_BAR.partition("parameters:")[0]),
 }
 SOLID = ("hoop", "sphere", "outside")
 

@@ -179,6 +179,18 @@ def test_a_fraction_and_a_tall_bracket_are_never_broken():
     assert layout.lines(whole, 1, width) == [whole]
 
 
+def test_a_right_side_is_not_torn_where_it_can_stand_alone():
+    def fits(formula):
+        return layout.lines(formula, 20, width)
+
+    left, right = "a + b + c + d", "e - f + g + h"
+    assert layout.equation(left, "0", fits, is_long=True) == [f"{left} = 0"]
+    assert layout.equation(left, right, fits, is_long=True) == [left, f"= {right}"]
+    assert layout.equation(left, right, fits, is_long=False) == [f"{left} = e - f", "+ g + h"]
+    long = " + ".join("abcdefgh")  # its end has room for a short right side
+    assert layout.equation(long, "k", fits, is_long=True)[-1].endswith(" = k")
+
+
 def test_rows_stand_at_their_equals_signs():
     assert display([("x", "s"), ("y", "0")]) == "x &= s \\\\\ny &= 0"
     assert pairs([[("x", "s"), ("u", "t")], [("y", "0")]]) == "x &= s & u &= t \\\\\ny &= 0"

@@ -74,8 +74,8 @@ ALLOWED: dict[str, set[str]] = {
     | {"compile_places", "numerics", "render", "simulate", "simulate_method", "simulate_report"}
     | {"simulate_setup", "simulate_table", "study"},
     "stability": RECORDS
-    | {"analysis", "chart", "checks", "compile_steps", "integrators", "mechanics", "numerics"}
-    | {"render", "simulate_method", "simulate_setup", "states", "stepping", "study"},
+    | {"analysis", "chart", "checks", "compile_steps", "evaluate", "integrators", "mechanics"}
+    | {"numerics", "render", "simulate_method", "simulate_setup", "states", "stepping", "study"},
     "cli_stability": {"cli_common", "errors", "files", "stability", "wanted"},
     "cli_simulate": {"cli_common", "errors", "files", "simulate_run", "wanted"},
     "chart": RECORDS

@@ -121,16 +121,18 @@ def test_a_wide_matrix_is_listed_entry_by_entry():
     assert latex_context(Notes(derivation_of("slider_pendulum")))["matrix"]["whole"]
 
 
-def test_the_context_holds_nothing_but_text():
-    def plain(value):
-        if isinstance(value, dict):
-            return all(plain(v) for v in value.values())
-        if isinstance(value, tuple):
-            return all(plain(v) for v in value)
-        return isinstance(value, str | bool)
+def is_text(value):
+    """Whether a value is text or a truth, or tables of these."""
+    if isinstance(value, dict):
+        return all(is_text(v) for v in value.values())
+    if isinstance(value, tuple):
+        return all(is_text(v) for v in value)
+    return isinstance(value, str | bool)
 
+
+def test_the_context_holds_nothing_but_text():
     for context in (latex_context, text_context):
-        assert plain({**context(Notes(derivation_of("rigid_body"))), "words": {}})
+        assert is_text({**context(Notes(derivation_of("rigid_body"))), "words": {}})
 
 
 SCRIPT = """

@@ -8,10 +8,11 @@ from functools import cache
 
 import pytest
 import sympy as sp
-from scenes import FILES, derivation_of, machine_of, model_of, text_of
-from test_notes import compiled
+from scenes import FILES, derivation_of, machine_of, model_of, study_of, text_of
+from scenes import LINKED as LINKED_SHIPPED
+from test_notes import compiled, is_text
 
-from eomgen import compile
+from eomgen import compile, formulation, output_links
 from eomgen.algebra.closed import Evaluation
 from eomgen.analysis import cards
 from eomgen.formulation import Formulation
@@ -207,15 +208,42 @@ def test_nothing_of_the_user_is_a_macro():
 
 
 def test_the_context_holds_nothing_but_text():
-    def plain(value):
-        if isinstance(value, dict):
-            return all(plain(v) for v in value.values())
-        if isinstance(value, tuple):
-            return all(plain(v) for v in value)
-        return isinstance(value, str | bool)
-
     for context in (latex_context, text_context):
-        assert plain({**context(mixed()), "words": {}})
+        assert is_text({**context(mixed()), "words": {}})
+
+
+def links_page(name, language="en"):
+    known = study_of(name).links
+    shown = links(known.scene.report, known.chosen, language)
+    return page(Notes(derivation_of(name), language, links=shown))
+
+
+def test_numbers_are_explained_where_there_are_any():
+    said = words.of("en")["growth"]
+    assert said in links_page("rolling_disc_upright")
+    assert said not in links_page("block_with_friction")  # of an inequality none are shown
+
+
+def test_no_word_is_divided_by_the_rules_of_another_language():
+    none = r"\lefthyphenmin=62"
+    assert none in links_page("four_bar", "es")
+    assert none not in links_page("four_bar")
+
+
+LEFT = re.compile(r"\b(the|are|asked|for|and|over|of|in|rank|singular where)\b")
+
+
+@pytest.mark.parametrize("name", [n for n in LINKED_SHIPPED if n != "bricard"])
+def test_the_reason_of_a_formulation_is_said_in_the_language_of_the_page(name):
+    known = study_of(name).links
+    reasons = {known.chosen.why, *(f.why for f in formulation.available(known.scene))}
+    for why in reasons:
+        assert output_links.reason(why, "en") == why
+        assert not LEFT.search(output_links.reason(why, "es").replace("`simulate`", ""))
+
+
+def test_a_reason_without_a_translation_stays():
+    assert output_links.reason("W-NEW: told; constant rank", "es") == "W-NEW: told; rango constante"
 
 
 # --- multipliers

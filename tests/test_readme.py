@@ -1,10 +1,13 @@
 """What the README shows is what the tool prints."""
 
 import re
+import shutil
 from pathlib import Path
 
+import pytest
 from click.testing import CliRunner
 from scenes import SHIPPED
+from tools import tool
 
 from eomgen.cli import commands
 from eomgen.functions.table import ROWS, ROWS_AT, STANDARD
@@ -46,6 +49,26 @@ def test_every_function_is_in_the_table():
         for n in re.findall("`([^`]+)`", row)
     ]
     assert listed == names
+
+
+EXAMPLES = [
+    line.split()[1:]
+    for command in commands.commands.values()
+    for line in (command.epilog or "").splitlines()
+    if any(f"{name}.yaml" in line for name in SHIPPED)
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("words", EXAMPLES, ids=" ".join)
+def test_examples_in_the_help_run_with_what_ships(words, call, tmp_path):
+    tool("cc")
+    pytest.importorskip("scipy")
+    for word in words:
+        if word.removesuffix(".yaml") in SHIPPED:
+            shutil.copy(SHIPPED[word.removesuffix(".yaml")], tmp_path)
+    said = call(*words)
+    assert said.code == 0, said.errors
 
 
 def test_there_are_two_commands_that_set_up():

@@ -5,11 +5,11 @@ import pytest
 import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from spec_samples import outcome, source
 
 from eomgen.spec import lower, names
 from eomgen.spec.formula import FUNCTIONS, parse, parse_relation
 from eomgen.spec.ledger import Ledger, Mistake
-from eomgen.spec.reader import Scalar
 from eomgen.spec.scope import Known, Scene
 from eomgen.spec.syntax import Name, children
 
@@ -24,18 +24,6 @@ def scene():
         rates = (sp.Symbol(f"{name}'", real=True), sp.Symbol(f"{name}''", real=True))
         found.names[name] = Known("coordinate", (symbol, *rates))
     return found
-
-
-def source(text):
-    return Scalar(text, 1, 1)
-
-
-def outcome(function, argument):
-    """The result and None, or None and the mistake."""
-    try:
-        return function(argument), None
-    except Mistake as mistake:
-        return None, mistake
 
 
 def lowered(text):

@@ -4,23 +4,11 @@ import pytest
 import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from spec_samples import outcome, source
 
 from eomgen.dimension import CURRENT, ENERGY, FORCE, LENGTH, MASS, NONE, TEMPERATURE, TIME
 from eomgen.spec.ledger import Mistake
-from eomgen.spec.reader import Scalar
 from eomgen.spec.units import POWER, UNITS, parse_unit, quantity, si_unit
-
-
-def source(text):
-    return Scalar(text, 1, 1)
-
-
-def outcome(function, argument):
-    """The result and None, or None and the mistake."""
-    try:
-        return function(argument), None
-    except Mistake as mistake:
-        return None, mistake
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from commandline import run
 from scenes import SHIPPED, study_of
+from small_scenes import FREE_BODY, oscillator
 from test_render_code_c import WARNINGS
 from tools import tool
 
@@ -17,19 +18,6 @@ from eomgen.stability import header, make, words
 from eomgen.stability.conditions import condition
 from eomgen.stability.records import Wish
 
-OSCILLATOR = """\
-eom: 1
-system: Damped oscillator
-space: line
-gravity: 0
-parameters: {m: 1, k: 4, c: C}
-coordinates: {x: 1}
-bodies:
-  mass: {mass: m, at: "[x]"}
-springs: [{along: x, stiffness: k}]
-dampers: [{along: x, damping: c}]
-initial: {x: 1, x': 0}
-"""
 ARM = ("tau_1=0", "tau_2=0")
 
 
@@ -44,7 +32,7 @@ def limits(found):
 
 def test_an_oscillator_has_the_limits_of_the_books():
     """omega = 2, zeta = 1/2."""
-    found = found_of(OSCILLATOR.replace("C", "2"))
+    found = found_of(oscillator("4", "2"))
     mode = found.fastest
     assert (mode.rate, mode.damping_ratio) == pytest.approx((2, 0.5))
     known = limits(found)
@@ -120,8 +108,8 @@ def test_the_page_and_the_json_say_the_same(call, arm):
 @pytest.mark.slow
 def test_stiffness_needs_damping_and_a_long_run():
     """Two-part rule: |Re| >= 0.3 |lambda| and |lambda| T > 1000."""
-    slow = OSCILLATOR.replace("C", "400")
-    fast = OSCILLATOR.replace("C", "2").replace("k: 4", "k: 1000000")  # hardly damped
+    slow = oscillator("4", "400")
+    fast = oscillator("1000000", "2")  # hardly damped
     for text, horizon, is_stiff in ((slow, 10.0, True), (slow, 1.0, False), (fast, 10.0, False)):
         found = found_of(text, integrators=("rk4",), horizon=horizon)
         assert any("W-STIFF" in w for w in found.warnings) == is_stiff
@@ -129,7 +117,7 @@ def test_stiffness_needs_damping_and_a_long_run():
 
 def test_the_step_for_an_accuracy_is_the_phase_error_of_rk4():
     """(h omega)^4 omega T / 120 = 1e-4, which the line I-STEP says of the undamped mode."""
-    found = found_of(OSCILLATOR.replace("C", "0"))
+    found = found_of(oscillator("4", "0"))
     assert found.accurate == pytest.approx((120e-4 / 20) ** 0.25 / 2, rel=0.02)
 
 
@@ -218,21 +206,14 @@ def test_contacts_are_left_out_with_words():
     assert any(line.startswith("contacts: this is the motion while no") for line in found.omitted)
 
 
-FREE_BODY = """\
-eom: 1
-system: Free body by yaw, pitch and roll
-space: solid
-gravity: 0
-parameters: {m: 1 kg, J: 1 kg*m^2}
-coordinates: {yaw: rad, pitch: rad, roll: rad}
-bodies:
-  ball:
-    mass: m
-    frame: {turn: [[z, yaw], [y, pitch], [x, roll]]}
-    com: [0, 0, 0]
-    inertia: [J, J, J]
-initial: {yaw: 0 rad, pitch: 0 rad, roll: 0 rad, yaw': 0 rad/s, pitch': 1 rad/s, roll': 0 rad/s}
-"""
+def test_what_is_shaken_has_no_equilibria():
+    """At rest at t = 0 only: a bisection that takes it for rest finds steps of no meaning."""
+    text = oscillator("4", "0").replace("coordinates:", "prescribed: {w: sin(3*t)}\ncoordinates:")
+    driven = text.replace('at: "[x]"', 'at: "[x + w]"')
+    still, shaken = (found_of(t, integrators=("rk4",)) for t in (text, driven))
+    assert any("equilibri" in word for word in still.looked)
+    assert shaken.looked == ("the start",)
+    assert any("depends on the time" in line for line in shaken.omitted)
 
 
 @pytest.mark.slow
@@ -271,7 +252,7 @@ def test_without_a_compiler_the_prediction_is_left(monkeypatch):
 
     monkeypatch.setattr(compiled, "compiler", missing)
     found = make.findings(
-        study.of_text(OSCILLATOR.replace("C", "2"), "scene.yaml"), Wish(integrators=("rk4",))
+        study.of_text(oscillator("4", "2"), "scene.yaml"), Wish(integrators=("rk4",))
     )
     assert limits(found)["rk4"].measured is None
     assert any("no C compiler" in line for line in found.omitted)

@@ -160,6 +160,24 @@ def test_the_same_run_gives_the_same_bits():
     assert integrate.joined(parts).states.tobytes() == whole.states[1:].tobytes()
 
 
+@pytest.mark.parametrize(
+    ("name", "made", "more"),
+    [
+        ("skew_arm", engine_c, {}),
+        ("skew_arm", engine_python, {}),
+        ("double_pendulum", engine_c, {"real": "float", "compensated": True}),
+    ],
+)
+def test_what_is_repeated_ends_where_it_ends_once(name, made, more):
+    engine, grid = made(name, **more), Grid(0.0, 0.01, 20, 20)
+    method, first = METHODS["rk4"], start(engine.steps)
+    ends = [engine.repeat(method, first, grid, times) for times in (1, 3)]
+    assert ends[0].tobytes() == ends[1].tobytes()
+    once = integrate.run(engine, method, first, grid).states[-1]
+    assert ends[0].tobytes() == once.tobytes()
+    assert not np.array_equal(once, first)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["skew_arm", "four_bar"])
 def test_float_follows_double(name):

@@ -178,9 +178,7 @@ def test_turned_axes_of_inertia_are_a_body_of_their_own():
 def test_angles_near_multiples_of_a_twelfth_turn_are_rounded_when_asked():
     text = changed('<origin xyz="0 0 1"/>', '<origin rpy="1.57079632679 -2.61799 1e-12"/>')
     (note,) = [n for n in said(text) if "multiple" in n]
-    assert (
-        note == "an angle near a multiple of pi/12 is kept as it is (see --round-angles) (3 times)"
-    )
+    assert note == "an angle near a multiple of pi/12 is kept as it is (see --within) (3 times)"
     exact = [str(t.angle) for t in model_of(text, within=Decimal("1e-9")).bodies[0].frame.turns]
     assert exact == ["-261799/100000", "pi/2", "q_hinge"]
     rough = [str(t.angle) for t in model_of(text, within=Decimal("1e-5")).bodies[0].frame.turns]

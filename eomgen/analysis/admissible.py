@@ -83,14 +83,7 @@ def positions(
     parameters, stand_ins = linkages.free_parameters(linkage)
     known = dict(model.initial if given is None else given)
     starts = {**(model.guess if guess is None else guess), **known}
-    values = {n: linkages.constant(linkage, v, parameters) for n, v in starts.items()}
-    zero = PRECISE.number(0)
-    state = State(
-        linkages.constant(linkage, time, parameters),
-        tuple(values.get(c.name, zero) for c in model.coordinates),
-        tuple(values.get(c.rate.name, zero) for c in model.coordinates),
-        parameters,
-    )
+    state = _started(linkage, starts, time, parameters)
     names = [c.name for c in model.coordinates]
     rates = [c.rate.name for c in model.coordinates]
     placed = _placed(linkage, state, [i for i, n in enumerate(names) if n not in known])
@@ -103,6 +96,20 @@ def positions(
         _refuse_penetration(linkage, moving)
     free = [i for i, n in enumerate(names) if n not in known]
     return Admissible(moving, tuple(moves), _others(linkage, moving, free), stand_ins)
+
+
+def _started(
+    linkage: Linkage, starts: Mapping[str, Any], time: Any, parameters: tuple[Any, ...]
+) -> State:
+    """Where a search starts: zero where nothing is said."""
+    values = {n: linkages.constant(linkage, v, parameters) for n, v in starts.items()}
+    zero, coordinates = PRECISE.number(0), linkage.model.coordinates
+    return State(
+        linkages.constant(linkage, time, parameters),
+        tuple(values.get(c.name, zero) for c in coordinates),
+        tuple(values.get(c.rate.name, zero) for c in coordinates),
+        parameters,
+    )
 
 
 def _refuse_penetration(linkage: Linkage, state: State) -> None:

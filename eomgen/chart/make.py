@@ -16,6 +16,7 @@ from eomgen.integrators.methods import METHODS
 from eomgen.study import Study
 
 UNOFFERED = "M is not constant, or forces depend on rates: not symplectic"
+UNTIMED = "not every run could be timed; the cost is in operations: give more --seconds"
 FOR_RUNS, FOR_TIMES = 0.5, 0.5  # of the seconds that the chart may take
 
 
@@ -40,14 +41,10 @@ def chart(study: Study, sweep: Sweep, state: str, inputs: dict[str, str]) -> Cha
     )
     left = began + (FOR_RUNS + FOR_TIMES) * sweep.seconds - time.monotonic()
     points, is_whole = timing.timed(pairs, left, sweep.seed)
-    remarks = [said] if said else []
     if not is_whole:
         # one cost for all: times of some would hide the others
         points = tuple(replace(p, seconds=None, median=None) for p in points)
-        remarks.append(
-            "not every run could be timed; the cost is in operations: give more --seconds"
-        )
-    remarks += _left_out(found, sweep)
+    remarks = (said, "" if is_whole else UNTIMED, *_left_out(found, sweep))
     steps = found[0].setup.steps
     return Chart(
         title=steps.program.title,
@@ -57,7 +54,7 @@ def chart(study: Study, sweep: Sweep, state: str, inputs: dict[str, str]) -> Cha
         horizon=horizon,
         reference=known,
         points=points,
-        remarks=tuple(remarks),
+        remarks=tuple(r for r in remarks if r),
         machine=timing.machine(),
     )
 

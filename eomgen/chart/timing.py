@@ -8,17 +8,19 @@ import random
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from math import ceil
 from statistics import median
 
 import numpy as np
 
 from eomgen.chart.records import OK, Point
-from eomgen.chart.runs import Plan
+from eomgen.chart.runs import RATE, Plan
 from eomgen.numerics import compiled
 from eomgen.numerics.records import Grid
 
 REPEATS = 5
-LEAST = 0.02  # s that the steps of one repeat take together
+LEAST = 0.004  # s that the steps of one repeat take together, at least
+MANY = 0.02  # s, as foreseen, of a run of which no more is repeated
 NOISY = 1.3  # median / minimum above which a point is timed again
 TRIES = 3
 
@@ -38,28 +40,35 @@ def timed(
 
 
 def _with_time(plan: Plan, point: Point) -> Point:
-    seconds = [_once(plan) for _ in range(REPEATS)]
+    times = 1
+    while _spent(plan, times) < LEAST:
+        times *= 2
+    seconds = [_once(plan, times) for _ in range(REPEATS)]
     for _ in range(TRIES - 1):
         if median(seconds) <= NOISY * min(seconds):
             break
-        seconds += [_once(plan) for _ in range(REPEATS)]
+        seconds += [_once(plan, times) for _ in range(REPEATS)]
     return replace(point, seconds=min(seconds), median=median(seconds))
 
 
-def _once(plan: Plan) -> float:
-    """Seconds of CPU per simulated second: enough steps to be measured, none written."""
-    setup, count = plan.variant.setup, 0
-    engine = plan.variant.engines[plan.run.precision]
-    whole = Grid(plan.grid.start, plan.grid.step, plan.grid.count, plan.grid.count)
-    spent = 0.0
+def _once(plan: Plan, times: int) -> float:
+    """Seconds of CPU per simulated second."""
+    return _spent(plan, times) / (times * _steps(plan) * plan.grid.step)
+
+
+def _spent(plan: Plan, times: int) -> float:
+    """Seconds of CPU for the steps of a plan `times` over, without rows."""
+    engine, count = plan.variant.engines[plan.run.precision], _steps(plan)
+    grid = Grid(plan.grid.start, plan.grid.step, count, count)
     with np.errstate(all="ignore"):
-        while spent < LEAST / REPEATS:
-            march = engine.march(plan.method, None, setup.start.state)
-            start = time.perf_counter()
-            march.advance(whole, 0, whole.count)
-            spent += time.perf_counter() - start
-            count += 1
-    return spent / (count * whole.count * whole.step)
+        start = time.thread_time()
+        engine.repeat(plan.method, plan.variant.setup.start.state, grid, times)
+        return time.thread_time() - start
+
+
+def _steps(plan: Plan) -> int:
+    """Every step takes the same statements, so the first of a long run stand for all."""
+    return min(plan.grid.count, ceil(MANY / (plan.operations * RATE)))
 
 
 def machine() -> dict[str, str]:

@@ -99,13 +99,27 @@ class EngineC:
         """Steps of a method from a state; `flow` names the function of energy and power."""
         return MarchC(self, method, flow, state)
 
+    def repeat(self, method: Method, state: Array, grid: Grid, times: int) -> Array:
+        """Where the steps of a grid end, made `times` over from the same state: for their time."""
+        run, start = self.run(grid), np.array(state, self.kind)
+        end, symbol = np.zeros_like(start), self.symbol("repeat")
+        symbol.restype = None
+        symbol(
+            self.symbol(_step(method)),
+            ctypes.byref(run),
+            ctypes.c_long(grid.count),
+            ctypes.c_long(times),
+            *(pointer(a) for a in (start, end)),
+        )
+        return end.astype(float)
+
 
 class MarchC:
     """Steps in a loop of C."""
 
     def __init__(self, engine: EngineC, method: Method, flow: str | None, state: Array) -> None:
         self.engine, self.work = engine, 0.0
-        self.step = engine.symbol(f"prepared_step_{method.spelled}")
+        self.step = engine.symbol(_step(method))
         self.flow = None if flow is None else engine.symbol(flow)
         self.state = np.array(state, engine.kind)
         self.carry = np.zeros_like(self.state)
@@ -135,6 +149,11 @@ class MarchC:
             grid.start + numbers * grid.step, rows[:full].astype(float), works[:full],
             done, int(stopped[0]), found,
         )  # fmt: skip
+
+
+def _step(method: Method) -> str:
+    """The name of the function of a step."""
+    return f"prepared_step_{method.spelled}"
 
 
 def pointer(array: Array) -> ctypes.c_void_p:

@@ -104,3 +104,6 @@ class Engine(Protocol):
 
     def march(self, method: Method, flow: str | None, state: Array) -> March:
         """Steps of a method from a state; `flow` names the function of energy and power."""
+
+    def repeat(self, method: Method, state: Array, grid: Grid, times: int) -> Array:
+        """Where the steps of a grid end, made `times` over from the same state: for their time."""

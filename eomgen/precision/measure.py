@@ -45,13 +45,15 @@ def of(study: Study) -> Report:
     if (prepared := bench.prepare()) is not None:
         traced["prepare"] = Traced(prepared, scales_of("prepare", prepared.results, ZERO))
     is_free = study.links is None and not study.model.quaternions
-    zero = ZERO if is_free else ON_CONSTRAINTS
-    rows = []
     for function in (f for f in shipped.functions if f.results):
         exact = bench.traced(function)
-        scales = scales_of(function.name, exact.results, zero)
+        scales = scales_of(function.name, exact.results, ZERO if is_free else ON_CONSTRAINTS)
         traced[function.name] = Traced(exact, scales)
-        rows.append(of_function(function.name, exact, measured, bench.arithmetic, scales))
+    rows = [
+        of_function(name, traced[name].exact, measured, bench.arithmetic, traced[name].scales)
+        for name in traced
+        if name != "prepare"
+    ]
     if not any(r.states for r in rows):
         raise CheckError("the code has no value at any state; give `range` for the coordinates")
     condition = _condition(shipped, traced)

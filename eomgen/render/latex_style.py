@@ -103,13 +103,23 @@ def pairs(rows: Sequence[Rows]) -> str:
 
 
 def equation(left: str, right: str) -> str:
-    """Rows of one numbered equation: left = right, broken in its left side."""
-    return relation(f"{left} = {right}")
+    """Rows of one numbered equation: left = right, broken in its left side or between both."""
+    found = layout.equation(left, right, _fitting, is_long=width(left) > LINE / 3)
+    return _aligned(found)
 
 
 def relation(whole: str) -> str:
     """Rows of one relation, aligned at their left."""
-    first, *rest = broken(whole, LINE - NUMBER)
+    return _aligned(_fitting(whole))
+
+
+def _fitting(formula: str) -> list[str]:
+    """Lines that leave room for the number of an equation."""
+    return broken(formula, LINE - NUMBER)
+
+
+def _aligned(lines: Sequence[str]) -> str:
+    first, *rest = lines
     # behind & TeX takes a minus for one between two terms
     first = re.sub("^-", "{-}", first)
     spelled = [f"& {first}", *(rf"&\quad {line}" for line in rest)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 Width = Callable[[str], float]
+Break = Callable[[str], list[str]]
 
 OPENING, CLOSING = "([{", ")]}"
 
@@ -44,6 +45,17 @@ def lines(formula: str, limit: float, width: Width) -> list[str]:
         result.append(formula[starts[start] : places[end - 1][0]])
         start = end
     return result
+
+
+def equation(left: str, right: str, fits: Break, *, is_long: bool) -> list[str]:
+    """left = right in lines that `fits` makes; a right side is not torn where it need not be.
+
+    is_long: the left side fills a line well enough to stand alone.
+    """
+    whole = fits(f"{left} = {right}")
+    apart = [*fits(left), *fits(f"= {right}")]
+    torn = not any(line.endswith(f"= {right}") for line in whole)
+    return apart if torn and is_long and len(apart) <= len(whole) else whole
 
 
 def _end(widths: list[float], depths: list[int], start: int, limit: float) -> int:

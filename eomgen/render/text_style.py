@@ -66,13 +66,22 @@ def display(rows: Rows) -> str:
 
 
 def equation(left: str, right: str) -> str:
-    """One equation of motion, broken in its left side."""
-    return relation(f"{left} = {right}")
+    """One equation of motion, broken in its left side or between both."""
+    found = layout.equation(left, right, _fitting, is_long=width(left) > LINE / 3)
+    return _indented(found)
 
 
 def relation(whole: str) -> str:
     """One relation, what is too long going on below."""
-    first, *rest = layout.lines(whole, LINE, width)
+    return _indented(_fitting(whole))
+
+
+def _fitting(formula: str) -> list[str]:
+    return layout.lines(formula, LINE, width)
+
+
+def _indented(lines: Sequence[str]) -> str:
+    first, *rest = lines
     return "\n".join([f"  {first}", *(f"      {line}" for line in rest)])
 
 

@@ -15,6 +15,7 @@ from eomgen.analysis.equilibrium_records import Equilibrium
 from eomgen.checks import samples
 from eomgen.dimension import NONE
 from eomgen.errors import EomgenError, UsageError
+from eomgen.evaluate import depends_on_time
 from eomgen.mechanics import machine
 from eomgen.model import Coordinate, Model
 from eomgen.numerics.records import Array, Stopped
@@ -72,12 +73,21 @@ def _place(setup: Setup, named: tuple[str, str], start: Start) -> Place | None:
         return None
     slope, matrix, *damping = (np.asarray(f, float) for f in found)
     motion = Linear(matrix, len(setup.steps.program.coordinates), *damping)
-    at_rest = bool(np.max(np.abs(slope)) <= RESTING * (1 + np.max(np.abs(matrix))))
+    is_still = bool(np.max(np.abs(slope)) <= RESTING * (1 + np.max(np.abs(matrix))))
+    at_rest = is_still and not _is_driven(setup)
     return Place(*named, start.time, np.asarray(start.state, float), motion, at_rest)
+
+
+def _is_driven(setup: Setup) -> bool:
+    """Whether the motion reads the time: what is still now need not stay so."""
+    program = setup.steps.program
+    return depends_on_time(replace(program, functions=(program.function("state_derivative"),)))
 
 
 def _at_rest(setup: Setup) -> Looked:
     study, start = setup.study, setup.start
+    if _is_driven(setup):
+        return Looked((), (), ("equilibria: the motion depends on the time, so none stays one",))
     try:
         found = _equilibria(study, start)
     except EomgenError as error:

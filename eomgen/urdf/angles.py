@@ -41,7 +41,7 @@ def point_out(robot: Robot, notes: Notes) -> None:
     for joint in robot.joints:
         for angle in joint.origin.rpy:
             if angle.value and angle.twelfths is None and _is_near(angle.value, SUSPICIOUS):
-                text = "an angle near a multiple of pi/12 is kept as it is (see --round-angles)"
+                text = "an angle near a multiple of pi/12 is kept as it is (see --within)"
                 notes.add(text, angle.spot)
 
 

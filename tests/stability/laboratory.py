@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 from scenes import SHIPPED
+from small_scenes import oscillator
 from tools import tool
 
 from eomgen import compile_flow, compile_steps, stepping, study
@@ -31,19 +32,7 @@ RK3 = Method(
 EVERY = {m.name: m for m in (EULER, HEUN, RK3, *METHODS.values())}
 PROJECTIONS = ("project_positions", "project_rates", "constraint_margin")
 
-OSCILLATOR = """\
-eom: 1
-system: Oscillator
-space: line
-gravity: 0
-parameters: {m: 1, k: 1, c: 0}
-coordinates: {x: 1}
-bodies:
-  mass: {mass: m, at: "[x]"}
-springs: [{along: x, stiffness: k}]
-dampers: [{along: x, damping: c}]
-initial: {x: 1, x': 0}
-"""
+OSCILLATOR = oscillator()
 
 DOUBLE_PENDULUM = """\
 eom: 1

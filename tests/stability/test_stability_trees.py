@@ -16,6 +16,7 @@ from laboratory import (
     stepped,
 )
 from scipy.spatial.transform import Rotation
+from small_scenes import FREE_BODY
 
 from eomgen import stepping
 from eomgen.errors import UsageError
@@ -60,23 +61,6 @@ def test_rows_6_and_7_only_canonical_methods_keep_the_energy(step, semi, verlet,
 def test_row_6_verlet_is_not_offered_where_it_is_not_symplectic():
     with pytest.raises(UsageError, match="E-SYM: verlet is not symplectic"):
         stepping.of(derived(DOUBLE_PENDULUM), ("verlet",))
-
-
-FREE_BODY = """\
-eom: 1
-system: Free body by yaw, pitch and roll
-space: solid
-gravity: 0
-parameters: {m: 1 kg, J: 1 kg*m^2}
-coordinates: {yaw: rad, pitch: rad, roll: rad}
-bodies:
-  ball:
-    mass: m
-    frame: {turn: [[z, yaw], [y, pitch], [x, roll]]}
-    com: [0, 0, 0]
-    inertia: [J, J, J]
-initial: {yaw: 0 rad, pitch: 0 rad, roll: 0 rad, yaw': 0 rad/s, pitch': 1 rad/s, roll': 0 rad/s}
-"""
 
 
 def past_the_pole(miss, step):
