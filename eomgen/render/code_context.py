@@ -31,6 +31,12 @@ class Symbol:
     about: str
     value: str | None
 
+    @property
+    def meaning(self) -> str:
+        """What it is, for a comment."""
+        about = f": {self.about}" if self.about else ""
+        return f"{self.name}{about}{f' [{self.unit}]' if self.unit else ''}"
+
 
 def symbols(variables: tuple[Variable, ...], reserved: frozenset[str]) -> tuple[Symbol, ...]:
     """The variables as a target writes them."""
@@ -192,8 +198,8 @@ def c(subject: Program | Code) -> dict[str, object]:
         "math": tuple(calls),
         "open_codes": tuple(open_codes.values()),  # arguments of the function that sets parameters
         "defaults": tuple(
-            open_codes[v.name] if v.value is None else _c_constant(v.value)
-            for v in program.parameters
+            (symbol.code, open_codes[v.name] if v.value is None else _c_constant(v.value))
+            for symbol, v in zip(context["parameters"], program.parameters, strict=True)
         ),
         "initial_state": _initial_state(program, _c_constant),
     }
