@@ -161,7 +161,9 @@ def routine(function: Function, program: Program, dialect: Dialect, given: Compo
     names = names_of(short, read, given, dialect.reserved | own_names(program, short))
     names |= {name: f"m->c{first}[{LANE}]" for name, first in direct.items()}
     text = _Text(dialect, names, given)
-    cut = divided(found, dialect.longest, function is program.prepare)
+    at_once = function is program.prepare
+    longest = min(dialect.longest, dialect.once) if at_once else dialect.longest
+    cut = divided(found, longest, at_once)
     is_long = cut is not None or len(short.statements) > dialect.repeated
     base = _base(function, program) if is_long else None
     parts = (everything,) if cut is None else cut.parts

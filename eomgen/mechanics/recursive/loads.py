@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from eomgen.algebra import cost
 from eomgen.algebra.derive import pullback
 from eomgen.algebra.graph import Node
 from eomgen.mechanics import efforts, speeds
 from eomgen.mechanics.efforts import Effort
 from eomgen.mechanics.kinematics import Kinematics
-from eomgen.mechanics.recursive import recursion
+from eomgen.mechanics.recursive import gravity, recursion
+from eomgen.mechanics.recursive.formulas import Clock
 from eomgen.mechanics.recursive.records import GROUND, Place, PlanarFrame, SpatialFrame, Tree
 from eomgen.mechanics.recursive.recursion import Loads
 from eomgen.mechanics.recursive.steps import back
@@ -33,13 +35,22 @@ def generalized_forces(kinematics: Kinematics[Node], tree: Tree) -> tuple[Node, 
     wrenches: list[Vector[Node] | None] = [None] * len(tree.places)
     for number, wrench in applied.wrenches.items():
         wrenches[number] = wrench
-    weights = list(efforts.weights(kinematics))
     parts = (
         applied.forces,
         recursion.gathered(tree, wrenches),
-        generalized(kinematics, weights),
+        _weights(kinematics, tree),
     )
     return tuple(sum(row, zero) for row in zip(*parts, strict=True))
+
+
+def _weights(kinematics: Kinematics[Node], tree: Tree) -> Sequence[Node]:
+    """Of the weights, in the fewest operations: velocities swept back, or h x g of frames."""
+    swept = generalized(kinematics, list(efforts.weights(kinematics)))
+    if not gravity.is_of_frames(tree):
+        return swept
+    prepared = Clock(kinematics).constant_bits
+    both = (swept, gravity.weights(tree))
+    return min(both, key=lambda rows: cost.operations(rows, prepared))
 
 
 def generalized(kinematics: Kinematics[Node], applied: Sequence[Effort[Node]]) -> list[Node]:
