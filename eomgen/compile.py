@@ -214,7 +214,7 @@ class Machine:
     @cached_property
     def outputs(self) -> tuple[Node, ...]:
         """The author's own formulas."""
-        return self.outputs_with(self.motion if holds_motion(self.model) else {})
+        return self.outputs_with(self.motion if motions.holds_motion(self.model) else {})
 
     def outputs_with(self, motion: Mapping[sp.Symbol, Node]) -> tuple[Node, ...]:
         """The author's own formulas over these q'' and u'; none where no formula holds one."""
@@ -238,12 +238,6 @@ def solved(
         return tuple(solution), ()
     (solution,), pivots = ldl.solve(matrix, right)
     return tuple(solution), pivots
-
-
-def holds_motion(model: Model) -> bool:
-    """Whether an output mentions q'' or u'."""
-    held = {c.acceleration for c in model.coordinates} | {s.rate for s in model.speeds}
-    return any(o.formula.free_symbols & held for o in model.outputs)
 
 
 def machine_of(model: Model) -> Machine:

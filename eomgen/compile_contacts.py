@@ -8,11 +8,12 @@ from functools import cached_property
 
 from eomgen.algebra.assemble import assemble
 from eomgen.algebra.graph import Node
-from eomgen.compile import Machine, holds_motion
+from eomgen.compile import Machine
 from eomgen.mechanics import contacts, contacts_conditions, contacts_modes, contacts_motion
 from eomgen.mechanics.contacts import Contact
 from eomgen.mechanics.contacts_modes import FLIGHT, Mode
 from eomgen.mechanics.contacts_motion import Motion
+from eomgen.mechanics.motions import holds_motion
 from eomgen.program import Function
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from eomgen.compile import holds_motion
 from eomgen.compile_contacts import Touching
 from eomgen.errors import CheckError
 from eomgen.evaluate import Engine, Result
 from eomgen.mechanics import contacts_conditions, contacts_modes
 from eomgen.mechanics.contacts_conditions import ABOVE, AT_LEAST, ZERO, Condition
 from eomgen.mechanics.contacts_modes import FLIGHT, Mode
+from eomgen.mechanics.motions import holds_motion
 from eomgen.states import State
 
 NOTHING = 1e-9  # SI; what counts as zero

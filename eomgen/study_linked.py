@@ -13,7 +13,7 @@ from eomgen.analysis import cards
 from eomgen.checks import agreement, dimensions, expectations, links, mass, power, samples
 from eomgen.compile import Machine
 from eomgen.formulation import Formulation, Linked
-from eomgen.mechanics import lagrange
+from eomgen.mechanics import lagrange, motions
 from eomgen.mechanics.equations import Derivation
 from eomgen.model import Model
 from eomgen.program import Function, Program, Variable
@@ -126,7 +126,7 @@ def _moving(scene: Linked, functions: tuple[Function, ...]) -> tuple[Function, .
     if not scene.model.guides:
         return functions
     smooth = {"accelerations", "state_derivative", "multipliers"}
-    if compile.holds_motion(scene.model):
+    if motions.holds_motion(scene.model):
         smooth.add("outputs")
     return tuple(f for f in functions if f.name not in smooth)
 

@@ -81,3 +81,9 @@ def normalised(model: Model, algebra: Algebra[S]) -> tuple[S, ...]:
         scale = algebra.number(1) / algebra.apply("sqrt", dot(parts, parts))
         found |= {s: found[s] * scale for s in q.symbols}
     return tuple(found[c.symbol] for c in model.coordinates)
+
+
+def holds_motion(model: Model) -> bool:
+    """Whether an output mentions q'' or u'."""
+    held = {c.acceleration for c in model.coordinates} | {s.rate for s in model.speeds}
+    return any(o.formula.free_symbols & held for o in model.outputs)
