@@ -186,6 +186,7 @@ def c(subject: Program | Code) -> dict[str, object]:
         "batch": code.style.batch,
         "waves": waves,
         "lane_waves": lane_waves,
+        "several_bodies": any(f.lanes and len(f.lanes.bodies) > 1 for f in context["functions"]),
         "own_waves": own_waves,
         "math": tuple(calls),
         "open_codes": tuple(open_codes.values()),  # arguments of the function that sets parameters
@@ -205,9 +206,9 @@ def _waves(functions: Iterable[Routine]) -> tuple[str, ...]:
 
 def _lane_waves(functions: Iterable[Routine]) -> tuple[str, ...]:
     """The same in batches."""
-    lanes = [each for f in functions for each in f.lanes]
+    lanes = [f.lanes for f in functions if f.lanes is not None]
     first = {wave.kind for each in lanes for wave in each.waves}
-    found = first | {step.kind for each in lanes for step in each.body.steps}
+    found = first | {s.kind for each in lanes for body in each.bodies for s in body.steps}
     return tuple(kind for kind in WAVES if kind in found)
 
 

@@ -41,10 +41,11 @@ def whole(lowered: Lowered) -> Part:
     return Part(function.statements, (), stores, lowered.content)
 
 
-def divided(lowered: Lowered, limit: int) -> Divided | None:
+def divided(lowered: Lowered, limit: int, at_once: bool = False) -> Divided | None:
     """The parts of a function with more statements than `limit`, of half of it; else None.
 
-    Loops over lanes have made a function short.
+    Loops over lanes have made a function short. at_once: a part writes a slot before it has read
+    all others, so that what it reads for the last time is kept to its end.
     """
     statements = lowered.function.statements
     if len(statements) <= limit or any(isinstance(s, Alike) for s in statements):
@@ -54,13 +55,14 @@ def divided(lowered: Lowered, limit: int) -> Divided | None:
     starts = range(0, len(statements), size)
     chunks = [statements[i : i + size] for i in starts]
     contents = [lowered.contents[i : i + size] for i in starts]
-    return _connected(chunks, contents, lowered.function.results)
+    return _connected(chunks, contents, lowered.function.results, at_once)
 
 
 def _connected(
     chunks: Sequence[tuple[Statement, ...]],
     contents: Sequence[Sequence[Content]],
     results: Sequence[Expression],
+    at_once: bool,
 ) -> Divided:
     """The parts with their loads and stores; a slot serves again when its value is dead."""
     made = [[n for s in chunk for n in defined(s)] for chunk in chunks]
@@ -76,8 +78,12 @@ def _connected(
     parts = []
     for i, chunk in enumerate(chunks):
         loads = [(name, shelf.slots[name]) for name in reads[i] if place[name] < i]
-        shelf.clear(name for name, _ in loads if last[name] == i)
+        dead = [name for name, _ in loads if last[name] == i]
+        if not at_once:
+            shelf.clear(dead)
         stores = [(name, shelf.put(name)) for name in made[i] if last.get(name, i) > i]
+        if at_once:
+            shelf.clear(dead)
         parts.append(Part(chunk, _values(loads), _values(stores) + stored[i], known[i]))
     return Divided(tuple(parts), shelf.size)
 
