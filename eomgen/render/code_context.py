@@ -18,6 +18,8 @@ from eomgen.render.naming import components
 from eomgen.render.routines import Routine, routine
 
 WAVES = ("pair", "sine", "cosine")
+MANY_LANES, FEW_LANES = 32, 16  # multiples of the numbers in 64 bytes
+FEW_SLOTS = 100  # values that wait for another loop
 LONGEST_FORMULA = 60  # characters of a comment
 
 
@@ -186,7 +188,7 @@ def c(subject: Program | Code) -> dict[str, object]:
         "batch": code.style.batch,
         "waves": waves,
         "lane_waves": lane_waves,
-        "several_bodies": any(f.lanes and len(f.lanes.bodies) > 1 for f in context["functions"]),
+        "lanes": _lanes(context["functions"]),
         "own_waves": own_waves,
         "math": tuple(calls),
         "open_codes": tuple(open_codes.values()),  # arguments of the function that sets parameters
@@ -202,6 +204,12 @@ def _waves(functions: Iterable[Routine]) -> tuple[str, ...]:
     """The kinds of steps that compute a sine or cosine at one state."""
     found = {s.kind for f in functions for body in (f.body, *f.parts) for s in body.steps}
     return tuple(kind for kind in WAVES if kind in found)
+
+
+def _lanes(functions: Iterable[Routine]) -> int:
+    """How many states are computed side by side; fewer where their values would leave the cache."""
+    most = max((f.lanes.slots for f in functions if f.lanes), default=0)
+    return MANY_LANES if most <= FEW_SLOTS else FEW_LANES
 
 
 def _lane_waves(functions: Iterable[Routine]) -> tuple[str, ...]:

@@ -7,17 +7,30 @@ result is written where it is known: neither takes a register from one end to th
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from eomgen.algebra.cost import CYCLES, WEIGHTS
+from eomgen.algebra.order import AT_ONCE
 from eomgen.algebra.unroll import renamed
-from eomgen.program import Apply, Assign, Expression, Read, RequirePositive, Statement, operands
+from eomgen.program import (
+    Apply,
+    Assign,
+    Expression,
+    Read,
+    RequirePositive,
+    Statement,
+    Value,
+    operands,
+)
 from eomgen.render.lowered import Lowered, content, defined, mapped, surveyed
 from eomgen.render.pairs import WAVE_KINDS, groups, is_wave
 from eomgen.render.parts import Part
 
 ROWS = ("state", "accelerations", "inputs")  # what differs between the states of a batch
 WAVES = "waves"  # the array of sines and cosines
+OF_A_CHAIN = 30  # statements of a loop whose lanes would wait
+OF_MANY = 200  # of one that was cut because it was long
 
 
 @dataclass(frozen=True)
@@ -32,6 +45,11 @@ class Wave:
     index: int
     slot: int
     names: tuple[str, ...]
+
+    @property
+    def reads(self) -> dict[str, Read]:
+        """Where each of the values is read."""
+        return {name: Read(WAVES, self.slot + k) for k, name in enumerate(self.names)}
 
 
 @dataclass(frozen=True)
@@ -76,7 +94,7 @@ def without(lowered: Lowered, found: Sequence[Wave]) -> Lowered:
     """The function that reads these waves like an argument."""
     if not found:
         return lowered
-    known = {n: Read(WAVES, w.slot + k) for w in found for k, n in enumerate(w.names)}
+    known = {name: read for wave in found for name, read in wave.reads.items()}
     function = lowered.function
     rest = (s for s in function.statements if not (is_wave(s) and known.keys() & {*defined(s)}))
     return surveyed(
@@ -98,6 +116,39 @@ def runs(reads: Iterable[Read]) -> tuple[tuple[str, int, int], ...]:
         else:
             found.append((read.argument, read.index, read.index + 1))
     return tuple(found)
+
+
+def longest_body(lowered: Lowered, longest: int) -> int:
+    """How many statements one loop over the lanes may have.
+
+    A processor looks a few hundred operations ahead. Where all lanes would wait for one long chain,
+    loops so short that it sees several of their rounds have something to do; else one loop is
+    best, for it writes fewest values to memory, until there are too many to order them well.
+    """
+    if _waits(lowered):
+        return min(longest, OF_A_CHAIN)
+    return min(longest, OF_MANY) if len(lowered.function.statements) > longest else longest
+
+
+def _waits(lowered: Lowered) -> bool:
+    """Whether the longest chain takes more cycles than the operations, `AT_ONCE` in each."""
+    ready: dict[str, int] = {}
+    for statement in lowered.function.statements:
+        end = max((_ready(e, ready) for e in operands(statement)), default=0)
+        ready.update(dict.fromkeys(defined(statement), end))
+    work = sum(WEIGHTS.get(operator, 0) for operator in lowered.content.operators)
+    return work <= AT_ONCE * max(ready.values(), default=0)
+
+
+def _ready(expression: Expression, ready: Mapping[str, int]) -> int:
+    """When an expression is known [cycles]."""
+    match expression:
+        case Value(name):
+            return ready[name]
+        case Apply(operator, parts):
+            start = max((_ready(e, ready) for e in parts), default=0)
+            return start + CYCLES.get(operator, 0)
+    return 0
 
 
 def in_place(part: Part) -> Iterator[Event]:

@@ -24,7 +24,17 @@ from eomgen.program import (
 from eomgen.render.code import Names, expression
 from eomgen.render.dialects import Dialect
 from eomgen.render.grouped import apart
-from eomgen.render.lanes import ROWS, WAVES, Load, Store, Wave, in_place, runs, waves, without
+from eomgen.render.lanes import (
+    ROWS,
+    Load,
+    Store,
+    Wave,
+    in_place,
+    longest_body,
+    runs,
+    waves,
+    without,
+)
 from eomgen.render.lowered import Lowered, content, lowered, operations, surveyed
 from eomgen.render.naming import LANE, Components, Survey, names_of, own_names, survey
 from eomgen.render.pairs import WAVE_KINDS, groups, is_wave, pair
@@ -235,12 +245,12 @@ class _Text:
     def lanes(self, found: Lowered) -> Lanes:
         """The statements for many states."""
         first = waves(found)
-        names = {
-            Read(WAVES, w.slot + k): self.names[n] for w in first for k, n in enumerate(w.names)
-        }
-        text = replace(self, names={**self.names, **names})
+        names: dict[Expression | str, str] = dict(self.names)
+        for wave in first:
+            names.update((read, names[name]) for name, read in wave.reads.items())
+        text = replace(self, names=names)
         rest = sparing(without(found, first))
-        cut = divided(rest, self.dialect.longest, at_once=True)
+        cut = divided(rest, longest_body(rest, self.dialect.longest), at_once=True)
         parts = (whole(rest),) if cut is None else cut.parts
         return Lanes(
             first,
