@@ -46,7 +46,7 @@ from eomgen.cli_stability import stability
 from eomgen.errors import EomgenError, UsageError
 from eomgen.wanted import Wanted, wanted
 
-COLLECT_RARELY = 200_000  # a command lives for a second; looking for circles would take a tenth
+COLLECT_RARELY = 1_000_000  # a command lives for a second; looking for circles would take a tenth
 SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 NOTES = frozenset(("latex", "text"))  # targets that show the closed form
 TARGET_NAMES = ("latex", "c", "python", "text")

@@ -12,7 +12,8 @@ from eomgen.algebra import ldl
 from eomgen.algebra.arithmetic import evaluate, over
 from eomgen.algebra.assemble import assemble
 from eomgen.algebra.elementary import maximum, minimum
-from eomgen.algebra.graph import LEAVES, Node, below
+from eomgen.algebra.graph import LEAVES, Node
+from eomgen.algebra.walk import below
 from eomgen.checks import damping, separable
 from eomgen.compile import LARGEST_UNROLLED, Machine, solved
 from eomgen.errors import UsageError

@@ -14,7 +14,8 @@ import numpy as np
 from eomgen import compile_watch
 from eomgen.algebra.arithmetic import FLOAT, evaluate
 from eomgen.algebra.closed import ClosedForm
-from eomgen.algebra.graph import Node, below
+from eomgen.algebra.graph import Node
+from eomgen.algebra.walk import below
 from eomgen.analysis import augmented, linkage, virtual
 from eomgen.analysis.admissible import Admissible
 from eomgen.analysis.cards import Report

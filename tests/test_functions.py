@@ -26,7 +26,8 @@ from eomgen.algebra import derive, jacobian
 from eomgen.algebra.arithmetic import FLOAT, evaluate
 from eomgen.algebra.cost import operations
 from eomgen.algebra.elementary import absolute, maximum, minimum, sign
-from eomgen.algebra.graph import Graph, below, sqrt
+from eomgen.algebra.graph import Graph, sqrt
+from eomgen.algebra.walk import below
 from eomgen.checks import samples
 from eomgen.errors import UsageError
 from eomgen.functions import places, sensitivity, table

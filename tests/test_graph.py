@@ -22,7 +22,8 @@ from eomgen.algebra.arithmetic import (
 )
 from eomgen.algebra.closed import ClosedForm
 from eomgen.algebra.elementary import BUILD
-from eomgen.algebra.graph import Graph, below
+from eomgen.algebra.graph import Graph
+from eomgen.algebra.walk import below
 from eomgen.program import OPERATORS
 
 

@@ -98,7 +98,7 @@ def test_every_part_reads_and_writes_in_place(name, limit):
     """Played with an array of slots: what is loaded was stored there by name, and nothing else."""
     found = found_of(name)
     rest = sparing(without(found, waves(found)))
-    cut = divided(rest, limit, at_once=True)
+    cut = divided(rest, limit, in_place=True)
     held = {}
     for part in (whole(rest),) if cut is None else cut.parts:
         assert {n for s in part.statements for n in defined(s)} <= played(part, held)

@@ -5,7 +5,8 @@ import pytest
 
 from eomgen.algebra import ldl
 from eomgen.algebra.arithmetic import EXACT, FLOAT, evaluate
-from eomgen.algebra.graph import Graph, below
+from eomgen.algebra.graph import Graph
+from eomgen.algebra.walk import below
 
 
 def random_spd(size, seed):

@@ -6,8 +6,9 @@ from hung import cart
 
 from eomgen import compile
 from eomgen.algebra.elementary import function
-from eomgen.algebra.graph import Graph, below
+from eomgen.algebra.graph import Graph
 from eomgen.algebra.order import by_critical_path
+from eomgen.algebra.walk import below
 from eomgen.spec import read
 
 sin, cos = function("sin"), function("cos")

@@ -1,6 +1,7 @@
 """Long functions in parts: the same bits, the same statuses, in one state and in batches."""
 
 import ctypes
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -13,6 +14,7 @@ from eomgen.errors import CheckError
 from eomgen.interpreter import FLOAT, call
 from eomgen.numerics.compiled import build
 from eomgen.program import IN_MOTION, Assign, Value, operands
+from eomgen.render import code_context
 from eomgen.render.code_context import Code, Style, coded
 from eomgen.render.lanes import ROWS
 from eomgen.render.lowered import content, lowered
@@ -156,12 +158,32 @@ def test_results_may_overlap_the_state_in_parts_too():
     assert list(shared) == expected.tolist()
 
 
-def test_the_state_derivative_is_made_of_the_parts_of_the_accelerations():
-    made = coded(program_of("skew_arm"), Style(longest=40))
+@pytest.mark.parametrize("limit", [40, ONE_PIECE])
+def test_the_state_derivative_calls_the_accelerations(limit, monkeypatch):
+    monkeypatch.setattr(code_context, "C", replace(code_context.C, repeated=20))
+    made = coded(program_of("skew_arm"), Style(longest=limit))
     source_ = render(made, TARGETS["c"], environment())["skew_arm.c"]
-    assert source_.count("part_1_of_accelerations(") == 3  # itself and two callers
+    call_ = "skew_arm_prepared_accelerations(t, state, inputs, m, &result["
+    assert source_.count(call_) == 1
+    assert source_.count("part_1_of_accelerations(") == (2 if limit == 40 else 0)  # and its caller
     assert "part_1_of_state_derivative(" not in source_
-    assert "part_1_of_energy(" in source_
+
+
+def test_a_short_state_derivative_calls_nothing():
+    made = coded(program_of("sprung_pair"))
+    source_ = render(made, TARGETS["c"], environment())["sprung_pair.c"]
+    assert "&result[" not in source_
+
+
+def test_prepare_keeps_no_constant_elsewhere():
+    """Its parts write the model; their slots hold only what crosses."""
+    made = coded(program_of("skew_arm"), Style(longest=40))
+    found = lowered(made.program.prepare)
+    cut = divided(found, 40, at_once=True)
+    given = [pair for part in cut.parts for pair in part.results]
+    assert sorted(number for _, number in given) == list(range(len(made.program.prepare.results)))
+    assert all(isinstance(value, Value) for part in cut.parts for value, _ in part.stores)
+    assert cut.slots < divided(found, 40).slots - len(given) + 1
 
 
 @each((ONE_PIECE,))

@@ -11,9 +11,9 @@ from scenes import FREE, model_of
 from eomgen import compile, study
 from eomgen.algebra import ldl
 from eomgen.algebra.arithmetic import FLOAT, NUMPY, evaluate, mpmath_arithmetic
-from eomgen.algebra.graph import below
 from eomgen.algebra.ldl import SingularMassMatrix
 from eomgen.algebra.specialise import specialised, with_values
+from eomgen.algebra.walk import below
 from eomgen.checks import samples
 from eomgen.errors import CheckError
 from eomgen.interpreter import run

@@ -12,7 +12,8 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from eomgen.algebra.graph import Node, below
+from eomgen.algebra.graph import Node
+from eomgen.algebra.walk import below
 
 # what compilers do for several lanes at once: a root may set errno, a sine is a call
 SIDE_BY_SIDE = frozenset(("add", "subtract", "multiply", "divide", "negate"))

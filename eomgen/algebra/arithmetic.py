@@ -16,8 +16,9 @@ import mpmath
 import sympy as sp
 
 from eomgen.algebra import ldl
-from eomgen.algebra.graph import Node, below
+from eomgen.algebra.graph import Node
 from eomgen.algebra.scalar import Algebra
+from eomgen.algebra.walk import below
 from eomgen.program import OPERATORS
 
 

@@ -8,9 +8,10 @@ from dataclasses import dataclass, field, replace
 from itertools import chain
 from math import prod
 
-from eomgen.algebra.graph import Node, below, term
+from eomgen.algebra.graph import Node, term
 from eomgen.algebra.ldl import Pivots
 from eomgen.algebra.order import by_critical_path
+from eomgen.algebra.walk import below
 from eomgen.program import (
     Apply,
     Assign,
@@ -57,9 +58,10 @@ def assemble(
     """
     if prod(shape) != len(results):
         raise ValueError(f"{name} has {len(results)} results, its shape is {shape}")
-    known = {*below(results)} if pivots else set()
+    known = {*below(results)}
     checks = tuple(pair for pair in pivots if not known.isdisjoint(_divisors(pair[0])))
-    return written(Function(name, about, shape, (), ()), results, checks, {})
+    nodes = below([node for pair in checks for node in pair], known=known)
+    return _stated(Function(name, about, shape, (), ()), (results, checks), nodes, {})
 
 
 def _divisors(pivot: Node) -> list[Node]:
@@ -86,12 +88,23 @@ def written(
 
     Nodes of `given` are not computed but read as it says; `names` have been given before.
     """
-    checks = dict(pivots)
-    wanted = [*results, *checks.values()]
-    nodes = below([*wanted, *checks], given.__contains__ if given else None)
+    wanted = [*results, *(node for pair in pivots for node in pair)]
+    nodes = below(wanted, given.__contains__ if given else None)
+    return _stated(head, (results, pivots), nodes, given, names)
+
+
+def _stated(
+    head: Function,
+    wanted: tuple[Sequence[Node], Pivots],
+    nodes: Sequence[Node],
+    given: Mapping[Node, Expression],
+    names: int = 0,
+) -> Function:
+    """`head` with statements for results and pivots; `nodes` are all that these are made of."""
+    results, checks = wanted[0], dict(wanted[1])
     partners = _partners(nodes)
-    known = {a for a, e in given.items() if a not in checks or isinstance(e, Value)}
-    named = {*partners, *checks, *_used_twice(nodes, wanted)} - known
+    unnamed = {a for a, e in given.items() if a not in checks or isinstance(e, Value)}
+    named = {*partners, *checks, *_used_twice(nodes, [*results, *checks.values()])} - unnamed
     draft = _Draft(frozenset(named), partners, given, names=names)
     # depth first, 2 to 15 % less values would be alive at a time, and the machine code no better
     # the least of several divisors is checked before any of them divides
@@ -168,8 +181,13 @@ READS: dict[str, Callable[[_Draft, Node], Expression]] = {
 def _apply(draft: _Draft, node: Node) -> None:
     """An operator on its operands; the largest of these get names where the line is too long."""
     expressions, sizes, operands = draft.expressions, draft.sizes, node.operands
-    while (size := 1 + sum([sizes[a] for a in operands])) > LARGEST_EXPRESSION:
-        _assign(draft, max(operands, key=sizes.__getitem__))
+    size = 1
+    for operand in operands:
+        size += sizes[operand]
+    while size > LARGEST_EXPRESSION:
+        largest = max(operands, key=sizes.__getitem__)
+        size -= sizes[largest] * operands.count(largest)
+        _assign(draft, largest)
     expressions[node] = Apply(node.operator, tuple([expressions[a] for a in operands]))
     sizes[node] = size
 

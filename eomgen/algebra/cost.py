@@ -10,7 +10,8 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
-from eomgen.algebra.graph import Node, below
+from eomgen.algebra.graph import Node
+from eomgen.algebra.walk import below
 from eomgen.program import OPERATORS
 
 FREE = dict.fromkeys(("number", "read", "symbol", "solved", "pi", "negate"), 0)
@@ -65,16 +66,19 @@ def _operations(nodes: Sequence[Node]) -> int:
     return sum(WEIGHTS[operator] * count for operator, count in counts.items()) + systems
 
 
-def _longest_chain(nodes: Iterable[Node]) -> int:
+def _longest_chain(nodes: Sequence[Node]) -> int:
     """The cycles that pass from the arguments, sines and cosines known, to the last result."""
-    ready: dict[Node, int] = {}
+    if not nodes:
+        return 0
+    ready = [0] * (nodes[-1].id + 1)
     for node in nodes:
         start = 0
         for operand in node.operands:
-            start = max(start, ready.get(operand, 0))
+            if ready[operand.id] > start:
+                start = ready[operand.id]
         takes = CYCLES.get(node.operator)
-        ready[node] = start + (_chain_of_system(node) if takes is None else takes)
-    return max(ready.values(), default=0)
+        ready[node.id] = start + (_chain_of_system(node) if takes is None else takes)
+    return max(ready)
 
 
 def _system(node: Node) -> int:

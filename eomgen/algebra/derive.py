@@ -8,7 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
 from eomgen.algebra.elementary import cos, cosh, log, sign, sin, sinh
-from eomgen.algebra.graph import Graph, Node, below, sqrt
+from eomgen.algebra.graph import Graph, Node, sqrt
+from eomgen.algebra.walk import below
 
 HALF = Fraction(1, 2)
 

@@ -8,10 +8,9 @@ outside a product, a number stands first in a product and last in a sum.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections import defaultdict
 from fractions import Fraction
 from math import isqrt
-from operator import attrgetter
 from typing import Any
 
 from eomgen.program import Read
@@ -78,11 +77,12 @@ class Node:
 
 
 class Graph:
-    """All nodes in the order of their ids, and the one table that makes equal values one node."""
+    """All nodes in the order of their ids, and the tables that make equal values one node."""
 
     def __init__(self) -> None:
         self.nodes: list[Node] = []
         self._table: dict[tuple[Any, ...], Node] = {}
+        self.pairs: defaultdict[str, dict[tuple[Node, Node], Node]] = defaultdict(dict)
         self._leaf_count = 0
         self.zero = self.number(0)
         self.one = self.number(1)
@@ -126,11 +126,11 @@ class Graph:
 
 def binary(operator: str, a: Node, b: Node) -> Node:
     """The node of a binary operator: one look-up."""
-    graph = a.graph
-    key = (operator, a.id, b.id)
-    node = graph._table.get(key)
+    operands = (a, b)
+    table = a.graph.pairs[operator]
+    node = table.get(operands)
     if node is None:
-        node = graph._table[key] = Node(graph, operator, (a, b), a.leaves | b.leaves, None)
+        node = table[operands] = Node(a.graph, operator, operands, a.leaves | b.leaves, None)
     return node
 
 
@@ -381,20 +381,3 @@ def sqrt(a: Node) -> Node:
     """The square root."""
     root = exact_root(a.datum) if a.operator == "number" else None
     return unary("sqrt", a) if root is None else a.graph.number(root)
-
-
-def below(nodes: Iterable[Node], stop: Callable[[Node], bool] | None = None) -> list[Node]:
-    """All nodes that `nodes` are computed from, themselves included, in order of evaluation.
-
-    Operands of a node that satisfies `stop` are not entered.
-    """
-    found = {*nodes}
-    stack = [*found]
-    while stack:
-        node = stack.pop()
-        if stop is None or not stop(node):
-            for operand in node.operands:
-                if operand not in found:
-                    found.add(operand)
-                    stack.append(operand)
-    return sorted(found, key=attrgetter("id"))

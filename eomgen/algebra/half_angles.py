@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from eomgen.algebra.elementary import cos, sin
-from eomgen.algebra.graph import Node, below
+from eomgen.algebra.graph import Node
 from eomgen.algebra.lift import Build
 from eomgen.algebra.terms import Products, summands
+from eomgen.algebra.walk import below
 
 Parents = Mapping[Node, list[Node]]
 

@@ -13,7 +13,8 @@ from fractions import Fraction
 from eomgen.algebra.cost import operations
 from eomgen.algebra.derive import HALF, RULES, Rules, direction, gradient
 from eomgen.algebra.elementary import BUILD, maximum
-from eomgen.algebra.graph import Node, below
+from eomgen.algebra.graph import Node
+from eomgen.algebra.walk import below
 
 Rows = list[list[Node]]
 LEAST_ROOT = Fraction(1, 2**100)  # below every root of a normal number in single precision

@@ -41,13 +41,16 @@ def by_critical_path(nodes: Sequence[Node], given: Container[Node]) -> list[Node
 
 def _waits(nodes: Sequence[Node], given: Container[Node]) -> bool:
     """Whether the longest chain takes more than the operations side by side."""
-    work, ready = 0, dict.fromkeys(nodes, 0)
+    work, ready = 0, [0] * (1 + max([node.id for node in nodes], default=0))
     for node in nodes:
         if node.operands and node not in given:
-            start = max([ready[a] for a in node.operands])
-            ready[node] = start + LATENCY.get(node.operator, 0)
+            start = 0
+            for operand in node.operands:
+                if ready[operand.id] > start:
+                    start = ready[operand.id]
+            ready[node.id] = start + LATENCY.get(node.operator, 0)
             work += WEIGHTS.get(node.operator, 0)
-    return work <= AT_ONCE * max(ready.values(), default=0)
+    return work <= AT_ONCE * max(ready)
 
 
 def _to_the_end(operands: Sequence[Sequence[int]], latency: Sequence[int]) -> list[int]:

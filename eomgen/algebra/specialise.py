@@ -15,11 +15,12 @@ from typing import Any
 from eomgen.algebra import cancellation, fixed, half_angles
 from eomgen.algebra.arithmetic import evaluate, mpmath_arithmetic
 from eomgen.algebra.assemble import assemble, written
-from eomgen.algebra.graph import Graph, Node, below
+from eomgen.algebra.graph import Graph, Node
 from eomgen.algebra.ldl import SingularMassMatrix
 from eomgen.algebra.lift import Lifted, Target, lift
 from eomgen.algebra.lower import GraphAlgebra
 from eomgen.algebra.terms import Products
+from eomgen.algebra.walk import below
 from eomgen.errors import UsageError
 from eomgen.program import Expression, Function, Number, Program, Read, Variable
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from eomgen.algebra.alike import Rows, rows_of
 from eomgen.algebra.assemble import assemble, written
-from eomgen.algebra.graph import Node, below
+from eomgen.algebra.graph import Node
 from eomgen.algebra.ldl import SingularMassMatrix
 from eomgen.algebra.lift import Lifted, lift
 from eomgen.algebra.specialise import (
@@ -23,6 +23,7 @@ from eomgen.algebra.specialise import (
     specialised,
     target_of,
 )
+from eomgen.algebra.walk import below
 from eomgen.algebra.weave import woven
 from eomgen.program import Expression, Function, Number, Program, Read
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from eomgen.algebra.arithmetic import Arithmetic
-from eomgen.algebra.graph import Node, below
+from eomgen.algebra.graph import Node
+from eomgen.algebra.walk import below
 from eomgen.analysis.linkage import State
 
 LEAVES = ("read", "symbol")

@@ -10,8 +10,8 @@ from typing import Any
 from eomgen.algebra.arithmetic import evaluate, mpmath_arithmetic
 from eomgen.algebra.arithmetic import over as arithmetic_over
 from eomgen.algebra.closed import ClosedForm, Evaluation
-from eomgen.algebra.graph import below
 from eomgen.algebra.normal import Form, TooLarge
+from eomgen.algebra.walk import below
 from eomgen.checks.evaluation import Bench, benches, over, singly, symbol_of
 from eomgen.checks.samples import Samples
 from eomgen.compile import Machine

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from eomgen.algebra.arithmetic import evaluate
-from eomgen.algebra.graph import Node, below
+from eomgen.algebra.graph import Node
+from eomgen.algebra.walk import below
 from eomgen.analysis import admissible, elimination, linkage
 from eomgen.analysis.linkage import PRECISE
 from eomgen.checks import samples

@@ -10,7 +10,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 
 from eomgen.algebra.arithmetic import FLOAT, evaluate
-from eomgen.algebra.graph import Node, below
+from eomgen.algebra.graph import Node
+from eomgen.algebra.walk import below
 from eomgen.errors import UsageError
 from eomgen.mechanics import machine
 from eomgen.mechanics.kinematics import Kinematics

@@ -9,9 +9,10 @@ from math import inf, isfinite, pi
 import sympy as sp
 
 from eomgen.algebra.arithmetic import FLOAT, evaluate, over
-from eomgen.algebra.graph import LEAVES, Graph, Node, below
+from eomgen.algebra.graph import LEAVES, Graph, Node
 from eomgen.algebra.ldl import Pivots
 from eomgen.algebra.lower import GraphAlgebra
+from eomgen.algebra.walk import below
 from eomgen.mechanics import constraints, machine, nullspace
 from eomgen.mechanics.kinematics import Flow, Kinematics
 from eomgen.mechanics.minimal import Elimination

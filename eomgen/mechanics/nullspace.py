@@ -14,9 +14,10 @@ import sympy as sp
 
 from eomgen.algebra import elimination
 from eomgen.algebra.arithmetic import FLOAT, evaluate, over
-from eomgen.algebra.graph import LEAVES, Graph, Node, below
+from eomgen.algebra.graph import LEAVES, Graph, Node
 from eomgen.algebra.ldl import Pivots
 from eomgen.algebra.lower import GraphAlgebra
+from eomgen.algebra.walk import below
 from eomgen.errors import UsageError
 from eomgen.mechanics import constraints, machine, speeds
 from eomgen.mechanics.constraints import Row

@@ -11,7 +11,6 @@ from eomgen.render.dialects import Dialect
 
 INFIX = {"add": ("+", 1), "subtract": ("-", 1), "multiply": ("*", 2), "divide": ("/", 2)}
 UNARY, ATOM = 3, 4
-BINDING = {operator: level for operator, (_, level) in INFIX.items()} | {"negate": UNARY}
 
 Names = Mapping[Expression | str, str]  # of what is read; a value stands by its name
 
@@ -38,37 +37,36 @@ def number(value: sp.Expr) -> str:
 
 def expression(tree: Expression, dialect: Dialect, names: Names) -> str:
     """`tree` as text; the language evaluates it in the order of the tree."""
+    return _bound(tree, dialect, names)[0]
+
+
+def _bound(tree: Expression, dialect: Dialect, names: Names) -> tuple[str, int]:
+    """An expression as text, and how tightly that binds."""
     if isinstance(tree, Value):
-        return names[tree.name]
+        return names[tree.name], ATOM
     if not isinstance(tree, Apply):
-        return _number(tree, dialect) if isinstance(tree, Number) else names[tree]
+        return _number(tree, dialect) if isinstance(tree, Number) else (names[tree], ATOM)
     operator, operands = tree.operator, tree.operands
     if operator in INFIX:
         sign, level = INFIX[operator]
-        first = expression(operands[0], dialect, names)
-        first = first if _binding(operands[0]) >= level else f"({first})"
-        return f"{first} {sign} {_guarded(operands[1], level, dialect, names)}"
+        first, binding = _bound(operands[0], dialect, names)
+        if binding < level:
+            first = f"({first})"
+        return f"{first} {sign} {_guarded(operands[1], level, dialect, names)}", level
     if operator == "negate":
-        return "-" + _guarded(operands[0], UNARY, dialect, names)
+        return "-" + _guarded(operands[0], UNARY, dialect, names), UNARY
     if operator == "pi":
-        return dialect.number.format("3.141592653589793")
-    arguments = ", ".join([expression(e, dialect, names) for e in operands])
-    return f"{dialect.calls[operator]}({arguments})"
+        return dialect.number.format("3.141592653589793"), ATOM
+    arguments = ", ".join([_bound(e, dialect, names)[0] for e in operands])
+    return f"{dialect.calls[operator]}({arguments})", ATOM
 
 
-def _number(tree: Number, dialect: Dialect) -> str:
+def _number(tree: Number, dialect: Dialect) -> tuple[str, int]:
     text = dialect.number.format(literal(abs(tree.value)))
-    return f"-{text}" if tree.value < 0 else text
-
-
-def _binding(tree: Expression) -> int:
-    """How tightly the text of an expression binds."""
-    if isinstance(tree, Apply):
-        return BINDING.get(tree.operator, ATOM)
-    return UNARY if isinstance(tree, Number) and tree.value < 0 else ATOM
+    return (f"-{text}", UNARY) if tree.value < 0 else (text, ATOM)
 
 
 def _guarded(operand: Expression, level: int, dialect: Dialect, names: Names) -> str:
     """A right operand: in parentheses unless it binds tighter than `level` and has no sign."""
-    text, binding = expression(operand, dialect, names), _binding(operand)
+    text, binding = _bound(operand, dialect, names)
     return text if binding > level and binding != UNARY else f"({text})"

@@ -33,6 +33,12 @@ class Symbol:
     about: str
     value: str | None
 
+    @property
+    def meaning(self) -> str:
+        """What it is, for a comment."""
+        about = f": {self.about}" if self.about else ""
+        return f"{self.name}{about}{f' [{self.unit}]' if self.unit else ''}"
+
 
 def symbols(variables: tuple[Variable, ...], reserved: frozenset[str]) -> tuple[Symbol, ...]:
     """The variables as a target writes them."""
@@ -179,9 +185,11 @@ def c(subject: Program | Code) -> dict[str, object]:
     unknown = tuple(v.name for v in program.parameters if v.value is None)
     open_codes = dict(zip(unknown, escaped(unknown, C.reserved), strict=True))
     prepare, constants = context["prepare"], context["constants"]
-    prepared = () if prepare is None else prepare.body.results
+    prepared = () if prepare is None else prepare.parts or (prepare.body,)
     return context | {
-        "prepared": tuple((constants[i].code, text) for i, text in prepared),
+        "prepared": tuple(
+            tuple((constants[i].code, text) for i, text in body.results) for body in prepared
+        ),
         "remarks": code.remarks.lines,
         "defined": code.remarks.constants,
         "fast_trig": code.style.fast_trig,
@@ -193,8 +201,8 @@ def c(subject: Program | Code) -> dict[str, object]:
         "math": tuple(calls),
         "open_codes": tuple(open_codes.values()),  # arguments of the function that sets parameters
         "defaults": tuple(
-            open_codes[v.name] if v.value is None else _c_constant(v.value)
-            for v in program.parameters
+            (symbol.code, open_codes[v.name] if v.value is None else _c_constant(v.value))
+            for symbol, v in zip(context["parameters"], program.parameters, strict=True)
         ),
         "initial_state": _initial_state(program, _c_constant),
     }

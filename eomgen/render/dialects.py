@@ -20,6 +20,7 @@ class Dialect:
     lanes: bool = False  # functions also for many states at once
     loops: bool = False  # limbs that are alike in a loop
     longest: int = maxsize  # statements of a function that is not cut into parts
+    repeated: int = maxsize  # statements that are written again rather than called
 
 
 def _words(text: str) -> frozenset[str]:
@@ -57,6 +58,7 @@ C_FUNCTIONS = {  # operator -> function of <math.h>; its macro is the name in ca
 _C_CALLS = {operator: name.upper() for operator, name in C_FUNCTIONS.items()} | {"sign": "SIGN"}
 # statements of about four operations each: beyond, gcc -O2 takes more than linear time
 LONGEST = 1000
+REPEATED = 200  # a call takes a hundredth of the time of so many
 _OWN = _words("""
 t state accelerations inputs p m work result waves lane bad REAL EPSILON PIVOT LANES NOT_ABOVE
 ALIGNED SIDE_BY_SIDE APART INLINED WAVE_RANGE SIGN_BIT bits bits_of real_of reduced
@@ -74,6 +76,7 @@ C = Dialect(
     pairs=True,
     loops=True,
     longest=LONGEST,
+    repeated=REPEATED,
 )
 PYTHON = Dialect(
     number="{}",

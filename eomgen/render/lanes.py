@@ -181,7 +181,7 @@ def _ends(part: Part, held: set[str]) -> dict[str, list[tuple[Expression, int]]]
     made = (n for s in part.statements for n in defined(s))
     number = {name: i for i, name in enumerate(made)}
     ends: dict[str, list[tuple[Expression, int]]] = {}
-    for expression, place in part.stores:
+    for expression, place in part.stores + part.results:
         needed = [v for v in content((expression,)).values if v not in held]
         last = max(needed, key=number.__getitem__, default="")
         ends.setdefault(last, []).append((expression, place))

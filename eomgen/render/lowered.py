@@ -61,11 +61,11 @@ def content(expressions: Iterable[Expression]) -> Content:
     stack.reverse()
     while stack:
         part = stack.pop()
-        if isinstance(part, Apply):
+        if isinstance(part, Value):
+            values.append(part.name)
+        elif isinstance(part, Apply):
             operators.append(part.operator)
             stack += part.operands[::-1]
-        elif isinstance(part, Value):
-            values.append(part.name)
         elif isinstance(part, Read):
             reads.append(part)
     return Content(tuple(values), tuple(reads), tuple(operators))

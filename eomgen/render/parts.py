@@ -1,7 +1,8 @@
 """Long functions cut into parts, so that a C compiler takes time in proportion to their length.
 
 Values that cross from one part to a later one live in slots of an array, which the parts share;
-so do the results, in the first slots, until every pivot has been checked.
+so do the results, in the first slots, until every pivot has been checked. What has no pivots may
+give its results away as they come.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ from heapq import heappop, heappush
 from eomgen.program import Alike, Expression, Statement, Value
 from eomgen.render.lowered import Content, Lowered, content, defined, merged
 
+# statements of a part; fewer cost more to hand on than a compiler gains
+MOST = 200
 Slots = tuple[tuple[Expression, int], ...]
 
 
@@ -23,7 +26,8 @@ class Part:
     statements: tuple[Statement, ...]
     loads: tuple[tuple[Value, int], ...]
     stores: Slots
-    content: Content  # of the statements, in order, and of the results among the stores
+    results: Slots  # that are given away: the number of each
+    content: Content  # of the statements, in order, and of the results
 
 
 @dataclass(frozen=True)
@@ -37,25 +41,28 @@ class Divided:
 def whole(lowered: Lowered) -> Part:
     """A function as the only part of itself."""
     function = lowered.function
-    stores = tuple((e, i) for i, e in enumerate(function.results))
-    return Part(function.statements, (), stores, lowered.content)
+    results = tuple((e, i) for i, e in enumerate(function.results))
+    return Part(function.statements, (), (), results, lowered.content)
 
 
-def divided(lowered: Lowered, limit: int, at_once: bool = False) -> Divided | None:
-    """The parts of a function with more statements than `limit`, of half of it; else None.
+def divided(
+    lowered: Lowered, longest: int, at_once: bool = False, in_place: bool = False
+) -> Divided | None:
+    """The parts of a function with more than `longest` statements, of half of it; else None.
 
-    Loops over lanes have made a function short. at_once: a part writes a slot before it has read
-    all others, so that what it reads for the last time is kept to its end.
+    No part has more than `MOST`. Loops over lanes have made a function short. at_once: results are
+    given away as they come; in_place: a part fills slots before it has read all others, so that
+    what it reads for the last time is kept to its end.
     """
     statements = lowered.function.statements
-    if len(statements) <= limit or any(isinstance(s, Alike) for s in statements):
+    if len(statements) <= longest or any(isinstance(s, Alike) for s in statements):
         return None
-    count = -(-2 * len(statements) // limit)
+    count = max(-(-2 * len(statements) // longest), -(-len(statements) // MOST))
     size = -(-len(statements) // count)
     starts = range(0, len(statements), size)
     chunks = [statements[i : i + size] for i in starts]
     contents = [lowered.contents[i : i + size] for i in starts]
-    return _connected(chunks, contents, lowered.function.results, at_once)
+    return _connected(chunks, contents, lowered.function.results, at_once, in_place)
 
 
 def _connected(
@@ -63,28 +70,29 @@ def _connected(
     contents: Sequence[Sequence[Content]],
     results: Sequence[Expression],
     at_once: bool,
+    in_place: bool,
 ) -> Divided:
     """The parts with their loads and stores; a slot serves again when its value is dead."""
     made = [[n for s in chunk for n in defined(s)] for chunk in chunks]
     place = {name: i for i, found in enumerate(made) for name in found}
-    stored = _results_by_part(results, place, len(chunks))
+    given = _results_by_part(results, place, len(chunks))
     known = [
         merged((*inside, content([e for e, _ in kept])))
-        for inside, kept in zip(contents, stored, strict=True)
+        for inside, kept in zip(contents, given, strict=True)
     ]
     reads = [dict.fromkeys(found.values) for found in known]
     last = {name: i for i, found in enumerate(reads) for name in found}
-    shelf = _Shelf(len(results))
+    shelf = _Shelf(0 if at_once else len(results))
     parts = []
     for i, chunk in enumerate(chunks):
         loads = [(name, shelf.slots[name]) for name in reads[i] if place[name] < i]
         dead = [name for name, _ in loads if last[name] == i]
-        if not at_once:
-            shelf.clear(dead)
-        stores = [(name, shelf.put(name)) for name in made[i] if last.get(name, i) > i]
-        if at_once:
-            shelf.clear(dead)
-        parts.append(Part(chunk, _values(loads), _values(stores) + stored[i], known[i]))
+        shelf.clear(() if in_place else dead)
+        stores = _values((name, shelf.put(name)) for name in made[i] if last.get(name, i) > i)
+        shelf.clear(dead if in_place else ())
+        kept, away = ((), given[i]) if at_once else (given[i], ())
+        # results first: what they read may stand in a slot that is filled again
+        parts.append(Part(chunk, _values(loads), kept + stores, away, known[i]))
     return Divided(tuple(parts), shelf.size)
 
 

@@ -42,6 +42,7 @@ from eomgen.render.parts import Part, divided, whole
 from eomgen.render.sparing import sparing
 
 COUNTED = {"add": "+", "subtract": "-", "negate": "-", "multiply": "*", "divide": "/"}
+IN_MODEL = {"parameters": "m->p.{}", "constants": "m->{}"}  # how parts of functions read it
 WORK = "work"  # the array of values that cross between the parts of a function
 
 
@@ -96,6 +97,7 @@ class Body:
 
     arguments: tuple[Argument, ...]
     steps: tuple[Step, ...]
+    stores: tuple[tuple[int, str], ...]  # slots of `WORK` that are filled, and with what
     results: tuple[tuple[int, str], ...]  # where each goes, and what
     uses: tuple[str, ...]  # which of `READ` and `WORK` are read
 
@@ -145,7 +147,7 @@ class Routine:
     takes: tuple[str, ...]  # which of `ARGUMENTS` a caller passes
     uses: tuple[str, ...]  # which of these are read
     can_fail: bool  # a pivot is checked
-    base: str = ""  # whose parts it shares; their results follow those of the body
+    base: str = ""  # a function that it calls; its results follow those of the body
 
 
 def routine(function: Function, program: Program, dialect: Dialect, given: Components) -> Routine:
@@ -160,14 +162,15 @@ def routine(function: Function, program: Program, dialect: Dialect, given: Compo
     names = names_of(short, read, given, dialect.reserved | own_names(program, short))
     names |= {name: f"m->c{first}[{LANE}]" for name, first in direct.items()}
     text = _Text(dialect, names, given)
-    cut = divided(found, dialect.longest)
-    base = None if cut is None else _base(function, program)
+    cut = divided(found, dialect.longest, function is program.prepare)
+    is_long = cut is not None or len(short.statements) > dialect.repeated
+    base = _base(function, program) if is_long else None
     return Routine(
         function.name,
         function.about,
         function.shape,
-        text.body(everything, read) if cut is None else _lead(text, function, base, read),
-        () if cut is None or base else tuple(text.body(p, survey(p.content)) for p in cut.parts),
+        _lead(text, function, base, read) if cut or base else text.body(everything, read),
+        () if cut is None or base else tuple(map(text.part, cut.parts)),
         text.lanes(found) if dialect.lanes else None,
         0 if cut is None else cut.slots,
         len(function.results),
@@ -203,9 +206,9 @@ def _ahead(function: Function, base: Function | None) -> int:
 
 def _lead(text: _Text, function: Function, base: Function | None, read: Survey) -> Body:
     """What stands beside the parts: the results before those of the base."""
-    results = function.results[: _ahead(function, base)]
-    stores = tuple((e, i) for i, e in enumerate(results))
-    part = Part((), (), stores, content(results))
+    ahead = function.results[: _ahead(function, base)]
+    results = tuple((e, i) for i, e in enumerate(ahead))
+    part = Part((), (), (), results, content(ahead))
     return replace(text.body(part, survey(part.content)), uses=read.used)
 
 
@@ -238,7 +241,8 @@ class _Text:
         return Body(
             arguments + loads,
             tuple(self.steps(part.statements)),
-            tuple((place, self.of(e)) for e, place in part.stores),
+            tuple((slot, self.of(e)) for e, slot in part.stores),
+            tuple((place, self.of(e)) for e, place in part.results),
             (*found.used, *([WORK] if part.loads or part.stores else [])),
         )
 
@@ -250,7 +254,7 @@ class _Text:
             names.update((read, names[name]) for name, read in wave.reads.items())
         text = replace(self, names=names)
         rest = sparing(without(found, first))
-        cut = divided(rest, longest_body(rest, self.dialect.longest), at_once=True)
+        cut = divided(rest, longest_body(rest, self.dialect.longest), in_place=True)
         parts = (whole(rest),) if cut is None else cut.parts
         return Lanes(
             first,
@@ -276,17 +280,26 @@ class _Text:
                     steps.append(Step("store", str(place), self.of(tree)))
                 case tuple():
                     steps.extend(self.steps(event))
-        return Body((), tuple(steps), (), tuple(used))
+        return Body((), tuple(steps), (), (), tuple(used))
 
     def row(self, read: Read) -> str:
         """Where the lane of an argument stands."""
-        match read.argument:
-            case "parameters":
-                return f"m->p.{self.given.members[read.argument][read.index]}"
-            case "constants":
-                return f"m->{self.given.members[read.argument][read.index]}"
-            case source:
-                return f"{source}[{read.index}][{LANE}]"
+        if read.argument in IN_MODEL:
+            return IN_MODEL[read.argument].format(self.given.members[read.argument][read.index])
+        return f"{read.argument}[{read.index}][{LANE}]"
+
+    def part(self, part: Part) -> Body:
+        """The statements of a part, which read the model and `WORK` where they need them."""
+        found, members = survey(part.content), self.given.members
+        placed: dict[Expression | str, str] = {
+            r: IN_MODEL[r.argument].format(members[r.argument][r.index])
+            for r in found.reads
+            if r.argument in IN_MODEL
+        }
+        placed |= {value.name: f"{WORK}[{slot}]" for value, slot in part.loads}
+        body = replace(self, names={**self.names, **placed}).body(part, found)
+        kept = tuple(a for a in body.arguments if a.source not in (WORK, *IN_MODEL))
+        return replace(body, arguments=kept)
 
     def steps(self, statements: Sequence[Statement]) -> Iterator[Step]:
         """The statements in order; a sine and its cosine are one step where the dialect likes."""

@@ -27,19 +27,25 @@ Split = tuple[Rigid, Rigid]  # what moves to the base, in the base's axes, and w
 
 
 def lumped(tree: Tree) -> Tree:
-    """The same tree with less inertia at its leaves."""
-    places = list(tree.places)
+    """The same tree with less inertia at its leaves; itself where nothing moves."""
+    places, moves = list(tree.places), False
     for number in reversed(range(1, len(places))):
         place = places[number]
         if place.body is None or (split := _split(place, places[place.base])) is None:
             continue
-        moved, kept = split
+        moves, (moved, kept) = True, split
         places[number] = replace(place, body=kept)
         base = places[place.base]
         if place.base != GROUND:
             total = moved if base.body is None else base.body + moved
             places[place.base] = replace(base, body=total)
-    return replace(tree, places=tuple(places))
+    return replace(tree, places=tuple(places)) if moves else tree
+
+
+def moments(tree: Tree) -> int:
+    """How many masses, first and second moments of all bodies are not zero."""
+    bodies = [place.body for place in tree.places if place.body is not None]
+    return sum(value is not value.graph.zero for body in bodies for value in body.moments)
 
 
 def _split(place: Place, base: Place) -> Split | None:

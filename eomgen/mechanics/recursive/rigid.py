@@ -24,6 +24,12 @@ class Rigid:
     first: Vector[Node]
     second: Matrix[Node]
 
+    @property
+    def moments(self) -> tuple[Node, ...]:
+        """Mass, first moments, and second moments, each once."""
+        second = (row[j] for i, row in enumerate(self.second) for j in range(i + 1))
+        return (self.mass, *self.first, *second)
+
     def __add__(self, other: Rigid) -> Rigid:
         """Both, in the same axes about the same origin."""
         rows = zip(self.second, other.second, strict=True)

@@ -12,8 +12,9 @@ import sympy as sp
 from eomgen.algebra import closed, normal
 from eomgen.algebra.arithmetic import evaluate, over
 from eomgen.algebra.closed import ClosedForm
-from eomgen.algebra.graph import Exact, Node, below, multiply
+from eomgen.algebra.graph import Exact, Node, multiply
 from eomgen.algebra.scalar import Algebra
+from eomgen.algebra.walk import below
 from eomgen.mechanics.vectors import Vector
 
 
