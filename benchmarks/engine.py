@@ -59,8 +59,10 @@ random order, over every way to write it and every compiler (`gcc -O3 -march=nat
 `clang -O3 -march=native`). All results agree to {worst:.0e} of the largest acceleration of a state
 (asserted: 1e-11). The arms have joint axes z, y, x in turn, or axes parallel to nothing, and full
 inertias; the tree is a free body (three slides, three turns) with four legs of six joints. A batch
-is 64 states; its time is that of one. Limbs that are alike fill the vectors of a single state too,
-so a batch gains less on the tree. `AVX2`: without the wider vectors that `native` may have."""
+is 64 states; its time is that of one, and its sines are its own, with and without `fast trig`.
+Limbs that are alike fill the vectors of a single state too, so a batch gains less on the tree;
+`limb after limb` is the code of one state without such vectors. `AVX2`: without the wider vectors
+that `native` may have."""
 DERIVATION = """\
 Processor seconds, the least of up to three. Ours and CasADi's end with the C of the accelerations
 (solution included), SymPy's and SymEngine's with the C of M and f after `cse`. `ours, checked`

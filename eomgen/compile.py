@@ -14,7 +14,7 @@ from eomgen.algebra import ldl
 from eomgen.algebra.assemble import assemble
 from eomgen.algebra.derive import gradient
 from eomgen.algebra.graph import Node
-from eomgen.dimension import NONE, TIME, Dimension
+from eomgen.compile_variables import moving, of_speeds, variable
 from eomgen.mechanics import (
     constraints,
     energies,
@@ -32,10 +32,8 @@ from eomgen.mechanics.recursive.engine import Engine
 from eomgen.mechanics.recursive.lumping import lumped
 from eomgen.mechanics.recursive.records import NoTree, Tree
 from eomgen.mechanics.vectors import Matrix, Vector, dot
-from eomgen.model import TIME as TIME_SYMBOL
-from eomgen.model import Coordinate, Description, Model, Prescribed, Speed
-from eomgen.program import Function, Program, Read, Variable
-from eomgen.spec.units import si_unit
+from eomgen.model import Model
+from eomgen.program import Function, Program, Read
 
 LARGEST_MATRIX = 32  # equations; above, the n^2 entries of M are written only if asked for
 LARGEST_UNROLLED = 12  # equations; above, L D L' runs in a loop
@@ -344,55 +342,13 @@ def program(m: Machine, names: Sequence[str] = ()) -> Program:
         title=next(iter(model.title.values())),
         digest=model.digest,
         version=__version__,
-        coordinates=tuple(_moving(model, c) for c in model.coordinates),
-        speeds=_speeds(model),
-        inputs=tuple(_variable(i.name, i.description) for i in model.inputs),
+        coordinates=tuple(moving(model, c) for c in model.coordinates),
+        speeds=of_speeds(model),
+        inputs=tuple(variable(i.name, i.description) for i in model.inputs),
         parameters=tuple(
-            _variable(p.name, p.description, p.value) for p in machine.free_parameters(model)
+            variable(p.name, p.description, p.value) for p in machine.free_parameters(model)
         ),
-        outputs=tuple(_variable(o.name, o.description) for o in model.outputs),
+        outputs=tuple(variable(o.name, o.description) for o in model.outputs),
         functions=tuple(FUNCTIONS[f](m) for f in wanted(model) if not names or f in names),
         engine="" if m.engine is None else m.engine.said,
-    )
-
-
-def _variable(name: str, description: Description, value: sp.Expr | None = None) -> Variable:
-    return Variable(name, _unit(description), description.about, value)
-
-
-def _unit(description: Description, per: Dimension = NONE) -> str:
-    """The SI unit per time where asked; an angle keeps its name; empty where none is stated."""
-    if description.dimension is None:
-        return ""
-    if description.dimension == NONE and description.unit:
-        return "rad" if per == NONE else f"rad/{si_unit(per)}"
-    return si_unit(description.dimension / per)
-
-
-def _moving(model: Model, moving: Coordinate | Prescribed) -> Variable:
-    return _variable(moving.name, moving.description, model.initial.get(moving.name))
-
-
-def _initial(model: Model, speed: Speed) -> sp.Expr | None:
-    """The speed's value where the spec gives the coordinates, rates and parameters it needs."""
-    values: dict[sp.Symbol, sp.Expr] = {TIME_SYMBOL: sp.S.Zero}
-    for c in model.coordinates:
-        values |= {s: model.initial[s.name] for s in (c.symbol, c.rate) if s.name in model.initial}
-    values |= {p.symbol: p.value for p in model.parameters if p.value is not None}
-    value = speeds.spelled_out(model, speed.formula).xreplace(values)
-    return None if value.free_symbols else value
-
-
-def _speeds(model: Model) -> tuple[Variable, ...]:
-    """The declared speeds, or one rate for each coordinate."""
-    if model.speeds:
-        return tuple(_variable(s.name, s.description, _initial(model, s)) for s in model.speeds)
-    return tuple(
-        Variable(
-            c.rate.name,
-            _unit(c.description, TIME),
-            f"rate of {c.name}",
-            model.initial.get(c.rate.name),
-        )
-        for c in model.coordinates
     )

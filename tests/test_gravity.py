@@ -9,8 +9,9 @@ from trees import PARALLEL, arm, spatial
 
 from eomgen.algebra import cost
 from eomgen.algebra.arithmetic import evaluate, mpmath_arithmetic
-from eomgen.checks import samples
+from eomgen.checks import power, samples
 from eomgen.compile import machine_of
+from eomgen.errors import CheckError
 from eomgen.mechanics import efforts
 from eomgen.mechanics.recursive import gravity, loads
 from eomgen.mechanics.recursive.records import NoTree
@@ -104,3 +105,13 @@ def test_on_a_long_skew_arm_half_of_the_operations_go():
     assert 2 * cost.operations(found.short_energy) <= cost.operations(found.energy)
     swept = loads.generalized(found.kinematics, list(efforts.weights(found.kinematics)))
     assert cost.operations(gravity.weights(found._lumped)) < cost.operations(swept)
+
+
+def test_a_written_energy_that_is_wrong_is_found(monkeypatch):
+    right = gravity.kinetic
+    monkeypatch.setattr(gravity, "kinetic", lambda tree: right(tree) * 2)
+    machine = machine_of(model_of("skew_arm"))
+    drawn = samples.draw(machine.model, 3, seed=1)
+    assert machine.short_energy[0] is not machine.energy[0]
+    with pytest.raises(CheckError, match="power in is not the rate of the energy"):
+        power.balance(machine, drawn)

@@ -16,9 +16,9 @@ from eomgen.numerics.compiled import build
 from eomgen.program import IN_MOTION, Assign, Value, operands
 from eomgen.render import code_context
 from eomgen.render.code_context import Code, Style, coded
+from eomgen.render.lanes import ROWS
 from eomgen.render.lowered import content, lowered
 from eomgen.render.parts import divided
-from eomgen.render.routines import ROWS
 from eomgen.render.targets import TARGETS, render
 from eomgen.render.templating import environment
 

@@ -86,6 +86,9 @@ RATIOS = (
     ("ours, folded", "ours, batch, folded"),
     ("ours, folded, fast trig", "ours, batch, folded, fast trig"),
     ("ours, folded", "ours, batch, folded, AVX2"),
+    ("ours, folded, fast trig", "ours, batch, folded, AVX2"),
+    ("ours, folded, limb after limb", "ours, batch, folded"),
+    ("ours, folded, limb after limb", "ours, batch, folded, AVX2"),
 )
 
 

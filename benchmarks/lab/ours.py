@@ -68,6 +68,7 @@ ROWS = (
     Row("ours, folded", ("--fold",), PREPARED),
     Row("ours, run-time parameters", (), PREPARED),
     Row("ours, folded, fast trig", ("--fold", "--fast-trig"), PREPARED),
+    Row("ours, folded, limb after limb", ("--fold", "--batch"), PREPARED),
     Row("ours, batch, folded", ("--fold", "--batch"), BATCH),
     Row("ours, batch, folded, fast trig", ("--fold", "--batch", "--fast-trig"), BATCH),
     Row("ours, batch, folded, AVX2", ("--fold", "--batch"), BATCH, AVX2),

@@ -30,14 +30,14 @@ def _lanes(alike: Alike, lanes: Mapping[int, dict[str, Expression]]) -> Iterator
         known.update((name, entries[lane]) for name, entries in alike.given)
         known.update((s.name, Value(in_lane(s.name, lane))) for s in alike.statements)
         for s in alike.statements:
-            yield Assign(in_lane(s.name, lane), _renamed(s.expression, known))
+            yield Assign(in_lane(s.name, lane), renamed(s.expression, known))
 
 
-def _renamed(expression: Expression, known: Mapping[str, Expression]) -> Expression:
+def renamed(expression: Expression, known: Mapping[str, Expression]) -> Expression:
     """The expression with names of a lane as what they stand for."""
     match expression:
         case Value(name):
             return known.get(name, expression)
         case Apply(operator, operands):
-            return Apply(operator, tuple(_renamed(a, known) for a in operands))
+            return Apply(operator, tuple(renamed(a, known) for a in operands))
     return expression

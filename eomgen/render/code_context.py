@@ -18,6 +18,8 @@ from eomgen.render.naming import components
 from eomgen.render.routines import Routine, routine
 
 WAVES = ("pair", "sine", "cosine")
+MANY_LANES, FEW_LANES = 32, 16  # multiples of the numbers in 64 bytes
+FEW_SLOTS = 100  # values that wait for another loop
 LONGEST_FORMULA = 60  # characters of a comment
 
 
@@ -194,6 +196,7 @@ def c(subject: Program | Code) -> dict[str, object]:
         "batch": code.style.batch,
         "waves": waves,
         "lane_waves": lane_waves,
+        "lanes": _lanes(context["functions"]),
         "own_waves": own_waves,
         "math": tuple(calls),
         "open_codes": tuple(open_codes.values()),  # arguments of the function that sets parameters
@@ -211,11 +214,17 @@ def _waves(functions: Iterable[Routine]) -> tuple[str, ...]:
     return tuple(kind for kind in WAVES if kind in found)
 
 
+def _lanes(functions: Iterable[Routine]) -> int:
+    """How many states are computed side by side; fewer where their values would leave the cache."""
+    most = max((f.lanes.slots for f in functions if f.lanes), default=0)
+    return MANY_LANES if most <= FEW_SLOTS else FEW_LANES
+
+
 def _lane_waves(functions: Iterable[Routine]) -> tuple[str, ...]:
     """The same in batches."""
-    lanes = [each for f in functions for each in f.lanes]
+    lanes = [f.lanes for f in functions if f.lanes is not None]
     first = {wave.kind for each in lanes for wave in each.waves}
-    found = first | {step.kind for each in lanes for step in each.body.steps}
+    found = first | {s.kind for each in lanes for body in each.bodies for s in body.steps}
     return tuple(kind for kind in WAVES if kind in found)
 
 

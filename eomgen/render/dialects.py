@@ -65,7 +65,7 @@ _OWN = _words("""
 t state accelerations inputs p m work result waves lane bad REAL EPSILON PIVOT LANES NOT_ABOVE
 ALIGNED SIDE_BY_SIDE APART INLINED WAVE_RANGE SIGN_BIT bits bits_of real_of reduced
 sine_and_cosine sine cosine
-lane_waves lane_sine lane_cosine gather scatter pick
+lane_waves lane_sine lane_cosine gather scatter gather_last scatter_last pick PIECE
 """)
 C = Dialect(
     number="REAL({})",

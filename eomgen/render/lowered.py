@@ -134,7 +134,7 @@ def defined(statement: Statement) -> tuple[str, ...]:
     return ()
 
 
-def _map(statement: Statement, change: Callable[[Expression], Expression]) -> Statement:
+def mapped(statement: Statement, change: Callable[[Expression], Expression]) -> Statement:
     """The statement with every expression changed."""
     match statement:
         case Assign(name, expression):
@@ -154,7 +154,7 @@ def _lowered(statement: Statement, name: Name) -> Statement:
     match statement:
         case Assign(_, Apply("sin" | "cos" as wave, (angle,))):
             return replace(statement, expression=Apply(wave, (_simple(angle, name),)))
-    return _map(statement, lambda e: _simple(e, name))
+    return mapped(statement, lambda e: _simple(e, name))
 
 
 def _simple(expression: Expression, name: Name) -> Expression:

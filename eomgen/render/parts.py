@@ -45,11 +45,14 @@ def whole(lowered: Lowered) -> Part:
     return Part(function.statements, (), (), results, lowered.content)
 
 
-def divided(lowered: Lowered, longest: int, at_once: bool = False) -> Divided | None:
+def divided(
+    lowered: Lowered, longest: int, at_once: bool = False, in_place: bool = False
+) -> Divided | None:
     """The parts of a function with more than `longest` statements, of half of it; else None.
 
     No part has more than `MOST`. Loops over lanes have made a function short. at_once: results are
-    given away as they come.
+    given away as they come; in_place: a part fills slots before it has read all others, so that
+    what it reads for the last time is kept to its end.
     """
     statements = lowered.function.statements
     if len(statements) <= longest or any(isinstance(s, Alike) for s in statements):
@@ -59,7 +62,7 @@ def divided(lowered: Lowered, longest: int, at_once: bool = False) -> Divided | 
     starts = range(0, len(statements), size)
     chunks = [statements[i : i + size] for i in starts]
     contents = [lowered.contents[i : i + size] for i in starts]
-    return _connected(chunks, contents, lowered.function.results, at_once)
+    return _connected(chunks, contents, lowered.function.results, at_once, in_place)
 
 
 def _connected(
@@ -67,6 +70,7 @@ def _connected(
     contents: Sequence[Sequence[Content]],
     results: Sequence[Expression],
     at_once: bool,
+    in_place: bool,
 ) -> Divided:
     """The parts with their loads and stores; a slot serves again when its value is dead."""
     made = [[n for s in chunk for n in defined(s)] for chunk in chunks]
@@ -82,8 +86,10 @@ def _connected(
     parts = []
     for i, chunk in enumerate(chunks):
         loads = [(name, shelf.slots[name]) for name in reads[i] if place[name] < i]
-        shelf.clear(name for name, _ in loads if last[name] == i)
+        dead = [name for name, _ in loads if last[name] == i]
+        shelf.clear(() if in_place else dead)
         stores = _values((name, shelf.put(name)) for name in made[i] if last.get(name, i) > i)
+        shelf.clear(dead if in_place else ())
         kept, away = ((), given[i]) if at_once else (given[i], ())
         # results first: what they read may stand in a slot that is filled again
         parts.append(Part(chunk, _values(loads), kept + stores, away, known[i]))

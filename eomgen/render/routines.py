@@ -20,21 +20,30 @@ from eomgen.program import (
     RequirePositive,
     Solve,
     Statement,
-    operands,
 )
 from eomgen.render.code import Names, expression
 from eomgen.render.dialects import Dialect
 from eomgen.render.grouped import apart
-from eomgen.render.lowered import content, lowered, operations, surveyed
+from eomgen.render.lanes import (
+    ROWS,
+    Load,
+    Store,
+    Wave,
+    in_place,
+    longest_body,
+    runs,
+    waves,
+    without,
+)
+from eomgen.render.lowered import Lowered, content, lowered, operations, surveyed
 from eomgen.render.naming import LANE, Components, Survey, names_of, own_names, survey
+from eomgen.render.pairs import WAVE_KINDS, groups, is_wave, pair
 from eomgen.render.parts import Part, divided, whole
+from eomgen.render.sparing import sparing
 
 COUNTED = {"add": "+", "subtract": "-", "negate": "-", "multiply": "*", "divide": "/"}
-ROWS = ("state", "accelerations", "inputs")  # what differs between the states of a batch
-WAVE_KINDS = {"sin": "sine", "cos": "cosine"}
 IN_MODEL = {"parameters": "m->p.{}", "constants": "m->{}"}  # how parts of functions read it
 WORK = "work"  # the array of values that cross between the parts of a function
-WAVES = "waves"  # the array of sines and cosines of a batch
 
 
 @dataclass(frozen=True)
@@ -99,34 +108,26 @@ class Body:
 
 
 @dataclass(frozen=True)
-class Wave:
-    """Sines and cosines of an argument, for all lanes in a loop of their own.
+class Lanes:
+    """A function for many states: its waves, and the rest in bodies over an array of `slots`.
 
-    They go to `slot` of `WAVES`, of a pair the cosine to the next.
+    runs: the rows of each argument that the bodies read, from the first to before the second.
     """
 
-    kind: str
-    source: str
-    index: int
-    slot: int
-
-    @property
-    def slots(self) -> int:
-        """How many numbers there are."""
-        return 2 if self.kind == "pair" else 1
-
-
-@dataclass(frozen=True)
-class Lanes:
-    """A function, or a part of one, for many states: what waves it reads, and the rest."""
-
     waves: tuple[Wave, ...]
-    body: Body
+    bodies: tuple[Body, ...]
+    slots: int
+    runs: tuple[tuple[str, int, int], ...]
 
     @property
-    def slots(self) -> int:
+    def wave_slots(self) -> int:
         """The length of `WAVES`."""
-        return sum(w.slots for w in self.waves)
+        return sum(len(w.names) for w in self.waves)
+
+    @property
+    def wave_sources(self) -> tuple[str, ...]:
+        """The arguments of which there are waves."""
+        return tuple(row for row in ROWS if any(w.source == row for w in self.waves))
 
 
 @dataclass(frozen=True)
@@ -138,7 +139,7 @@ class Routine:
     shape: tuple[int, ...]
     body: Body
     parts: tuple[Body, ...]
-    lanes: tuple[Lanes, ...]  # of a batch: for every part, or for the whole
+    lanes: Lanes | None  # of a batch
     slots: int
     size: int  # the number of results
     operators: frozenset[str]
@@ -166,14 +167,13 @@ def routine(function: Function, program: Program, dialect: Dialect, given: Compo
     cut = divided(found, longest, at_once)
     is_long = cut is not None or len(short.statements) > dialect.repeated
     base = _base(function, program) if is_long else None
-    parts = (everything,) if cut is None else cut.parts
     return Routine(
         function.name,
         function.about,
         function.shape,
         _lead(text, function, base, read) if cut or base else text.body(everything, read),
-        () if cut is None or base else tuple(map(text.part, parts)),
-        tuple(map(text.lanes, parts)) if dialect.lanes else (),
+        () if cut is None or base else tuple(map(text.part, cut.parts)),
+        text.lanes(found) if dialect.lanes else None,
         0 if cut is None else cut.slots,
         len(function.results),
         frozenset(everything.content.operators),
@@ -248,6 +248,48 @@ class _Text:
             (*found.used, *([WORK] if part.loads or part.stores else [])),
         )
 
+    def lanes(self, found: Lowered) -> Lanes:
+        """The statements for many states."""
+        first = waves(found)
+        names: dict[Expression | str, str] = dict(self.names)
+        for wave in first:
+            names.update((read, names[name]) for name, read in wave.reads.items())
+        text = replace(self, names=names)
+        rest = sparing(without(found, first))
+        cut = divided(rest, longest_body(rest, self.dialect.longest), in_place=True)
+        parts = (whole(rest),) if cut is None else cut.parts
+        return Lanes(
+            first,
+            tuple(map(text.lane_body, parts)),
+            len(rest.function.results) if cut is None else cut.slots,
+            runs(rest.content.reads),
+        )
+
+    def lane_body(self, part: Part) -> Body:
+        """The statements of a part for one lane, with all that it reads and writes in place."""
+        places = {v.name: f"{WORK}[{slot}][{LANE}]" for v, slot in part.loads}
+        used: dict[str, None] = {}
+        steps = []
+        for event in in_place(part):
+            match event:
+                case Load(Read() as read):
+                    used[read.argument] = None
+                    if read.argument != "time":
+                        steps.append(Step("assign", self.names[read], self.row(read)))
+                case Load(str() as name):
+                    steps.append(Step("assign", self.names[name], places[name]))
+                case Store(tree, place):
+                    steps.append(Step("store", str(place), self.of(tree)))
+                case tuple():
+                    steps.extend(self.steps(event))
+        return Body((), tuple(steps), (), (), tuple(used))
+
+    def row(self, read: Read) -> str:
+        """Where the lane of an argument stands."""
+        if read.argument in IN_MODEL:
+            return IN_MODEL[read.argument].format(self.given.members[read.argument][read.index])
+        return f"{read.argument}[{read.index}][{LANE}]"
+
     def part(self, part: Part) -> Body:
         """The statements of a part, which read the model and `WORK` where they need them."""
         found, members = survey(part.content), self.given.members
@@ -261,47 +303,15 @@ class _Text:
         kept = tuple(a for a in body.arguments if a.source not in (WORK, *IN_MODEL))
         return replace(body, arguments=kept)
 
-    def lanes(self, part: Part) -> Lanes:
-        """The statements for many states, without the waves of arguments, which come first."""
-        found: dict[Read, dict[str, str]] = {}
-        rest: list[Statement] = []
-        for statement in part.statements:
-            match statement:
-                case Assign(name, Apply("sin" | "cos" as wave, (Read() as angle,))) if (
-                    angle.argument in ROWS and wave not in found.get(angle, {})
-                ):
-                    found.setdefault(angle, {})[wave] = name
-                case _:
-                    rest.append(statement)
-        waves, read, slot = [], [], 0
-        for angle, both in found.items():
-            kind = "pair" if len(both) == 2 else WAVE_KINDS[next(iter(both))]
-            waves.append(Wave(kind, angle.argument, angle.index, slot))
-            for name in (both[w] for w in WAVE_KINDS if w in both):
-                read.append(Argument(self.names[name], WAVES, slot, name))
-                slot += 1
-        given = [e for e, _ in part.stores + part.results]
-        inside = content([e for s in rest for e in operands(s)] + given)
-        body = self.body(replace(part, statements=tuple(rest)), survey(inside))
-        return Lanes(tuple(waves), replace(body, arguments=body.arguments + tuple(read)))
-
     def steps(self, statements: Sequence[Statement]) -> Iterator[Step]:
         """The statements in order; a sine and its cosine are one step where the dialect likes."""
-        waiting: Statement | None = None
-        for statement in statements:
-            pair = _pair(waiting, statement) if waiting is not None else None
-            if pair is not None:
-                sine, cosine, angle = pair
+        for group in groups(statements) if self.dialect.pairs else ((s,) for s in statements):
+            both = pair(*group) if len(group) == 2 else None
+            if both is None:
+                yield from map(self.step, group)
+            else:
+                sine, cosine, angle = both
                 yield Step("pair", self.names[sine], self.of(angle), self.names[cosine])
-                waiting = None
-                continue
-            if waiting is not None:
-                yield self.step(waiting)
-            waiting = statement if self.dialect.pairs and _is_wave(statement) else None
-            if waiting is None:
-                yield self.step(statement)
-        if waiting is not None:
-            yield self.step(waiting)
 
     def bare(self, array: str) -> str:
         """An array without the lane."""
@@ -320,7 +330,7 @@ class _Text:
     def step(self, statement: Statement) -> Step:
         """One statement."""
         match statement:
-            case Assign(name, tree) if self.dialect.pairs and _is_wave(statement):
+            case Assign(name, tree) if self.dialect.pairs and is_wave(statement):
                 assert isinstance(tree, Apply)
                 return Step(WAVE_KINDS[tree.operator], self.names[name], self.of(tree.operands[0]))
             case Assign(name, tree):
@@ -348,22 +358,6 @@ class _Text:
     def solution(self, unknowns: Sequence[str]) -> tuple[tuple[str, int], ...]:
         """The names of what is read of a solution, and where it stands."""
         return tuple((self.names[x], i) for i, x in enumerate(unknowns) if x in self.names)
-
-
-def _is_wave(statement: Statement) -> bool:
-    """Whether a statement may be one half of a pair."""
-    tree = statement.expression if isinstance(statement, Assign) else None
-    return isinstance(tree, Apply) and tree.operator in WAVE_KINDS
-
-
-def _pair(first: Statement, second: Statement) -> tuple[str, str, Expression] | None:
-    """Sine, cosine and their angle, where two statements compute these."""
-    match first, second:
-        case Assign(a, Apply("sin", (x,))), Assign(b, Apply("cos", (y,))) if x == y:
-            return a, b, x
-        case Assign(a, Apply("cos", (x,))), Assign(b, Apply("sin", (y,))) if x == y:
-            return b, a, x
-    return None
 
 
 def _counted(function: Function, applied: Counter[str]) -> str:
