@@ -219,8 +219,8 @@ def test_functions_are_the_reactions(name):
     for at, _ in singly(scene, samples, FLOAT, 2):
         arguments = {"time": [0], "state": [0] * 2 * len(scene.model.coordinates)}
         arguments |= {"inputs": [0] * 9, "parameters": [0] * 99}
-        for leaf, value in at.leaves.items():
-            arguments[leaf.datum.argument][leaf.datum.index] = value
+        for leaf in scene.leaves:
+            arguments[leaf.datum.argument][leaf.datum.index] = at.leaves[leaf]
         for key, rows in wanted.items():
             assert functions[key].shape == (len(rows), len(rows[0]))
             values = run(functions[key], arguments, FLOAT)
