@@ -70,7 +70,7 @@ def played(part, held):
 
     held: what the slots hold, which the part adds to.
     """
-    slots = {v.name: slot for v, slot in part.loads}
+    slots = {name: slot for name, slot in part.loads}
     known = set()
 
     def needs(expressions):

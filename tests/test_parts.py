@@ -114,7 +114,7 @@ def test_slots_carry_what_later_parts_read(limit):
     assert max(len(p.statements) for p in cut.parts) <= limit
     held, results = {}, {}
     for part in cut.parts:
-        known = {v for v, slot in part.loads if held[slot] == v}
+        known = {Value(name) for name, slot in part.loads if held[slot] == Value(name)}
         assert len(known) == len(part.loads)
         for statement in part.statements:
             assert {Value(name) for name in content(operands(statement)).values} <= known

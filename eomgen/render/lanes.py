@@ -153,7 +153,7 @@ def _ready(expression: Expression, ready: Mapping[str, int]) -> int:
 
 def in_place(part: Part) -> Iterator[Event]:
     """The statements of a part, each behind the loads that it needs, before what it completes."""
-    held = {v.name for v, _ in part.loads}
+    held = {name for name, _ in part.loads}
     here: set[Read | str] = set()
 
     def loads(expressions: Iterable[Expression]) -> Iterator[Load]:

@@ -24,7 +24,7 @@ class Part:
     """Some statements of a function, the slots that they read before and write behind."""
 
     statements: tuple[Statement, ...]
-    loads: tuple[tuple[Value, int], ...]
+    loads: tuple[tuple[str, int], ...]
     stores: Slots
     results: Slots  # that are given away: the number of each
     content: Content  # of the statements, in order, and of the results
@@ -88,16 +88,12 @@ def _connected(
         loads = [(name, shelf.slots[name]) for name in reads[i] if place[name] < i]
         dead = [name for name, _ in loads if last[name] == i]
         shelf.clear(() if in_place else dead)
-        stores = _values((name, shelf.put(name)) for name in made[i] if last.get(name, i) > i)
+        stores = tuple((Value(n), shelf.put(n)) for n in made[i] if last.get(n, i) > i)
         shelf.clear(dead if in_place else ())
         kept, away = ((), given[i]) if at_once else (given[i], ())
         # results first: what they read may stand in a slot that is filled again
-        parts.append(Part(chunk, _values(loads), kept + stores, away, known[i]))
+        parts.append(Part(chunk, tuple(loads), kept + stores, away, known[i]))
     return Divided(tuple(parts), shelf.size)
-
-
-def _values(slots: Iterable[tuple[str, int]]) -> tuple[tuple[Value, int], ...]:
-    return tuple((Value(name), slot) for name, slot in slots)
 
 
 @dataclass

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from eomgen.algebra.unroll import unrolled
@@ -74,7 +74,7 @@ class Step:
     """One statement; `kind` says which fields are used.
 
     `assign`; `sine` or `cosine` of an expression, `pair`: both, the cosine called `other`;
-    `require`; `solve`; `alike`: steps in a loop over lanes.
+    `require`; `solve` is a `System`, `alike` a `Loop`.
     """
 
     kind: str
@@ -82,13 +82,26 @@ class Step:
     expression: str = ""
     other: str = ""
     scale: str = ""
-    values: tuple[tuple[str, int], ...] = ()  # of a solve: the names that are read, and where
+
+
+@dataclass(frozen=True)
+class System(Step):
+    """A linear system that is solved in a loop."""
+
+    values: tuple[tuple[str, int], ...] = ()  # the names that are read of the solution, and where
     matrix: tuple[str, ...] = ()
     right: tuple[str, ...] = ()
-    size: int = 0  # of a solve: the number of equations; of a loop that of lanes
-    given: tuple[Given, ...] = ()  # of a loop
-    steps: tuple[Step, ...] = ()  # of a loop; of kind `assign`, or `keep` in an array
-    kept: tuple[str, ...] = ()  # of a loop: arrays that it fills
+    size: int = 0  # the number of equations
+
+
+@dataclass(frozen=True)
+class Loop(Step):
+    """A loop over lanes."""
+
+    size: int = 0  # how many there are
+    given: tuple[Given, ...] = ()
+    steps: tuple[Step, ...] = ()  # of kind `assign`, or `keep` in an array
+    kept: tuple[str, ...] = ()  # arrays that it fills
 
 
 @dataclass(frozen=True)
@@ -172,7 +185,7 @@ def routine(function: Function, program: Program, dialect: Dialect, given: Compo
         function.about,
         function.shape,
         _lead(text, function, base, read) if cut or base else text.body(everything, read),
-        () if cut is None or base else tuple(map(text.part, cut.parts)),
+        () if cut is None or base else tuple(text.parts(cut.parts)),
         text.lanes(found) if dialect.lanes else None,
         0 if cut is None else cut.slots,
         len(function.results),
@@ -237,11 +250,12 @@ class _Text:
         return Argument(self.names[read], source, index, label, member)
 
     def body(self, part: Part, found: Survey) -> Body:
-        """The statements of a function, or of a part of one, which read what was found."""
-        arguments = tuple(map(self.argument, found.reads))
-        loads = tuple(Argument(self.names[v.name], WORK, slot, v.name) for v, slot in part.loads)
+        """The statements of a function, or of a part of one, which read what was found.
+
+        What is read in place needs no variable.
+        """
         return Body(
-            arguments + loads,
+            tuple([self.argument(r) for r in found.reads if self.names[r].isidentifier()]),
             tuple(self.steps(part.statements)),
             tuple((slot, self.of(e)) for e, slot in part.stores),
             tuple((place, self.of(e)) for e, place in part.results),
@@ -267,7 +281,7 @@ class _Text:
 
     def lane_body(self, part: Part) -> Body:
         """The statements of a part for one lane, with all that it reads and writes in place."""
-        places = {v.name: f"{WORK}[{slot}][{LANE}]" for v, slot in part.loads}
+        places = {name: f"{WORK}[{slot}][{LANE}]" for name, slot in part.loads}
         used: dict[str, None] = {}
         steps = []
         for event in in_place(part):
@@ -290,18 +304,20 @@ class _Text:
             return IN_MODEL[read.argument].format(self.given.members[read.argument][read.index])
         return f"{read.argument}[{read.index}][{LANE}]"
 
-    def part(self, part: Part) -> Body:
-        """The statements of a part, which read the model and `WORK` where they need them."""
-        found, members = survey(part.content), self.given.members
-        placed: dict[Expression | str, str] = {
-            r: IN_MODEL[r.argument].format(members[r.argument][r.index])
-            for r in found.reads
-            if r.argument in IN_MODEL
-        }
-        placed |= {value.name: f"{WORK}[{slot}]" for value, slot in part.loads}
-        body = replace(self, names={**self.names, **placed}).body(part, found)
-        kept = tuple(a for a in body.arguments if a.source not in (WORK, *IN_MODEL))
-        return replace(body, arguments=kept)
+    def parts(self, parts: Iterable[Part]) -> Iterator[Body]:
+        """The statements of parts, which read the model and `WORK` where they need them."""
+        names, members = dict(self.names), self.given.members
+        for part in parts:
+            found = survey(part.content)
+            placed: dict[Expression | str, str] = {
+                r: IN_MODEL[r.argument].format(members[r.argument][r.index])
+                for r in found.reads
+                if r.argument in IN_MODEL
+            }
+            placed |= {name: f"{WORK}[{slot}]" for name, slot in part.loads}
+            names.update(placed)
+            yield replace(self, names=names).body(part, found)
+            names.update((name, self.names[name]) for name in placed)
 
     def steps(self, statements: Sequence[Statement]) -> Iterator[Step]:
         """The statements in order; a sine and its cosine are one step where the dialect likes."""
@@ -338,7 +354,7 @@ class _Text:
             case RequirePositive(value, scale):
                 return Step("require", self.names[value.name], scale=self.of(scale))
             case Alike(lanes, given, statements, kept):
-                return Step(
+                return Loop(
                     "alike",
                     size=lanes,
                     given=tuple(self.array(name, entries) for name, entries in given),
@@ -346,7 +362,7 @@ class _Text:
                     kept=tuple(self.bare(name) for name in kept),
                 )
             case Solve(unknowns, matrix, right):
-                return Step(
+                return System(
                     "solve",
                     name=unknowns[0],
                     values=self.solution(unknowns),
