@@ -64,10 +64,10 @@ Limbs that are alike fill the vectors of a single state too, so a batch gains le
 `limb after limb` is the code of one state without such vectors. `AVX2`: without the wider vectors
 that `native` may have."""
 DERIVATION = """\
-Processor seconds, the least of up to three, and of ours and CasADi's the least of some rounds. Ours and CasADi's end with the C of the accelerations
-(solution included), SymPy's and SymEngine's with the C of M and f after `cse`. `ours, checked`
-starts from the text of the spec and makes every check that the command line makes. A dash: not
-within two minutes. Exponents are fitted from n = 25 on."""
+Processor seconds, the least of up to three, of ours and CasADi's also of some rounds. Ours and
+CasADi's end with the C of the accelerations (solution included), SymPy's and SymEngine's with the C
+of M and f after `cse`. `ours, checked` starts from the text of the spec and makes every check that
+the command line makes. A dash: not within two minutes. Exponents are fitted from n = 25 on."""
 COMPILING = "All functions of our C of the skew arm, parameters not folded."
 
 
