@@ -11,10 +11,10 @@ import sys
 from collections.abc import Callable
 from time import process_time
 
+from eomgen.cli import COLLECT_RARELY
 from lab import masses
 from lab.trees import Tree, arm, cart, skew_arm, walker
 
-COLLECT_RARELY = 1_000_000
 ENOUGH = 2.0  # seconds after which a derivation is not repeated
 TREES: dict[str, Callable[[int], Tree]] = {
     "cart": cart,

@@ -7,7 +7,7 @@ operations in one long chain may take longer than one with more of them side by 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Container, Iterable, Sequence
 from dataclasses import dataclass
 
 from eomgen.algebra.graph import Node
@@ -68,16 +68,23 @@ def _operations(nodes: Sequence[Node]) -> int:
 
 def _longest_chain(nodes: Sequence[Node]) -> int:
     """The cycles that pass from the arguments, sines and cosines known, to the last result."""
-    if not nodes:
-        return 0
-    ready = [0] * (nodes[-1].id + 1)
-    for node in nodes:
+    cycles = [CYCLES.get(node.operator) for node in nodes]
+    systems = zip(nodes, cycles, strict=True)
+    return longest(nodes, [_chain_of_system(n) if c is None else c for n, c in systems])
+
+
+def longest(nodes: Sequence[Node], takes: Iterable[int], given: Container[Node] = ()) -> int:
+    """The longest sum of what nodes take, one after the other; what is given waits for nothing.
+
+    nodes: operands first.
+    """
+    ready = [0] * (1 + max([node.id for node in nodes], default=0))
+    for node, own in zip(nodes, takes, strict=True):
         start = 0
-        for operand in node.operands:
+        for operand in () if node in given else node.operands:
             if ready[operand.id] > start:
                 start = ready[operand.id]
-        takes = CYCLES.get(node.operator)
-        ready[node.id] = start + (_chain_of_system(node) if takes is None else takes)
+        ready[node.id] = start + own
     return max(ready)
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Container, Sequence
 from heapq import heapify, heappop, heappush
 
-from eomgen.algebra.cost import CYCLES, WEIGHTS
+from eomgen.algebra.cost import CYCLES, WEIGHTS, longest
 from eomgen.algebra.graph import Node
 
 LATENCY = {**CYCLES, "sin": 25, "cos": 25}  # cycles until a value is there
@@ -41,16 +41,10 @@ def by_critical_path(nodes: Sequence[Node], given: Container[Node]) -> list[Node
 
 def _waits(nodes: Sequence[Node], given: Container[Node]) -> bool:
     """Whether the longest chain takes more than the operations side by side."""
-    work, ready = 0, [0] * (1 + max([node.id for node in nodes], default=0))
-    for node in nodes:
-        if node.operands and node not in given:
-            start = 0
-            for operand in node.operands:
-                if ready[operand.id] > start:
-                    start = ready[operand.id]
-            ready[node.id] = start + LATENCY.get(node.operator, 0)
-            work += WEIGHTS.get(node.operator, 0)
-    return work <= AT_ONCE * max(ready)
+    computed = [node.operator if node not in given else "read" for node in nodes]
+    work = sum([WEIGHTS.get(operator, 0) for operator in computed])
+    chain = longest(nodes, [LATENCY.get(operator, 0) for operator in computed], given)
+    return work <= AT_ONCE * chain
 
 
 def _to_the_end(operands: Sequence[Sequence[int]], latency: Sequence[int]) -> list[int]:

@@ -15,7 +15,8 @@ def below(
 ) -> list[Node]:
     """All nodes that `nodes` are computed from, themselves included, in order of evaluation.
 
-    Operands of a node that satisfies `stop` are not entered; `known` are among them, and entered.
+    Operands of a node that satisfies `stop` are not entered. known: some of them, with all that is
+    below these.
     """
     found = {*known, *nodes}
     stack = [*found.difference(known)]

@@ -250,12 +250,9 @@ class _Text:
         return Argument(self.names[read], source, index, label, member)
 
     def body(self, part: Part, found: Survey) -> Body:
-        """The statements of a function, or of a part of one, which read what was found.
-
-        What is read in place needs no variable.
-        """
+        """The statements of a function, or of a part of one, which read what was found."""
         return Body(
-            tuple([self.argument(r) for r in found.reads if self.names[r].isidentifier()]),
+            tuple(map(self.argument, found.reads)),
             tuple(self.steps(part.statements)),
             tuple((slot, self.of(e)) for e, slot in part.stores),
             tuple((place, self.of(e)) for e, place in part.results),
@@ -316,7 +313,8 @@ class _Text:
             }
             placed |= {name: f"{WORK}[{slot}]" for name, slot in part.loads}
             names.update(placed)
-            yield replace(self, names=names).body(part, found)
+            own = tuple(r for r in found.reads if r not in placed)
+            yield replace(self, names=names).body(part, replace(found, reads=own))
             names.update((name, self.names[name]) for name in placed)
 
     def steps(self, statements: Sequence[Statement]) -> Iterator[Step]:
