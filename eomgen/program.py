@@ -27,14 +27,14 @@ AT_A_STATE = ("time", "state", "inputs", "parameters")
 IN_MOTION = ARGUMENTS  # with accelerations that the caller chooses
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Number:
     """An exact rational constant."""
 
     value: Fraction
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Read:
     """One component of an argument of `ARGUMENTS`, or of the `constants`; of `time` that is 0."""
 
@@ -42,14 +42,14 @@ class Read:
     index: int
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Value:
     """The result of an earlier assignment."""
 
     name: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Apply:
     """An operator of `OPERATORS` on its operands; the exponent of `power` is any expression."""
 
@@ -60,7 +60,7 @@ class Apply:
 Expression = Number | Read | Value | Apply
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Assign:
     """name = expression."""
 
@@ -68,7 +68,7 @@ class Assign:
     expression: Expression
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class RequirePositive:
     """Stop with the status `singular` unless value > tolerance * scale (a pivot of L D L')."""
 
@@ -76,7 +76,7 @@ class RequirePositive:
     scale: Expression
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Solve:
     """names = A^-1 B by L D L' in a loop, for systems too large to unroll; same pivot rule.
 
@@ -94,7 +94,7 @@ class Solve:
         return (isqrt(8 * len(self.matrix) + 1) - 1) // 2
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Alike:
     """The same assignments once for each of `lanes` limbs that are built alike.
 

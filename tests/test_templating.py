@@ -8,7 +8,7 @@ from programs import PROGRAMS
 from eomgen.cache_folder import VARIABLE, root
 from eomgen.errors import UsageError
 from eomgen.render.lines import named, rows, short_statements, statements, wrap
-from eomgen.render.routines import Argument, Step
+from eomgen.render.records import Argument, Step
 from eomgen.render.targets import TARGETS, render
 from eomgen.render.templating import (
     c_comment,

@@ -11,7 +11,7 @@ from math import prod
 from eomgen.algebra.graph import Node, term
 from eomgen.algebra.ldl import Pivots
 from eomgen.algebra.order import by_critical_path
-from eomgen.algebra.walk import below
+from eomgen.algebra.walk import below, swept
 from eomgen.program import (
     Apply,
     Assign,
@@ -58,9 +58,11 @@ def assemble(
     """
     if prod(shape) != len(results):
         raise ValueError(f"{name} has {len(results)} results, its shape is {shape}")
-    known = {*below(results)}
+    nodes = swept(results)
+    known = frozenset(nodes) if pivots else frozenset[Node]()
     checks = tuple(pair for pair in pivots if not known.isdisjoint(_divisors(pair[0])))
-    nodes = below([node for pair in checks for node in pair], known=known)
+    if checks:
+        nodes = swept(chain(results, *checks))
     return _stated(Function(name, about, shape, (), ()), (results, checks), nodes, {})
 
 
@@ -89,7 +91,7 @@ def written(
     Nodes of `given` are not computed but read as it says; `names` have been given before.
     """
     wanted = [*results, *(node for pair in pivots for node in pair)]
-    nodes = below(wanted, given.__contains__ if given else None)
+    nodes = below(wanted, given.__contains__) if given else swept(wanted)
     return _stated(head, (results, pivots), nodes, given, names)
 
 

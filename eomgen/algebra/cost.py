@@ -11,7 +11,7 @@ from collections.abc import Collection, Container, Iterable, Sequence
 from dataclasses import dataclass
 
 from eomgen.algebra.graph import Node
-from eomgen.algebra.walk import below
+from eomgen.algebra.walk import swept
 from eomgen.program import OPERATORS
 
 FREE = dict.fromkeys(("number", "read", "symbol", "solved", "pi", "negate"), 0)
@@ -57,7 +57,7 @@ def operations(results: Iterable[Node], prepared: int = 0) -> int:
 def _moving(results: Iterable[Node], prepared: int) -> list[Node]:
     """The nodes that are not known before, in order of evaluation."""
     bits = ~prepared
-    return [node for node in below(results) if node.leaves & bits]
+    return [node for node in swept(results) if node.leaves & bits]
 
 
 def _operations(nodes: Sequence[Node]) -> int:

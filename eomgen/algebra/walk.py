@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Iterable
+from itertools import compress
 from operator import attrgetter
 
 from eomgen.algebra.graph import Node
 
 
-def below(
-    nodes: Iterable[Node],
-    stop: Callable[[Node], bool] | None = None,
-    known: Collection[Node] = (),
-) -> list[Node]:
+def below(nodes: Iterable[Node], stop: Callable[[Node], bool] | None = None) -> list[Node]:
     """All nodes that `nodes` are computed from, themselves included, in order of evaluation.
 
-    Operands of a node that satisfies `stop` are not entered. known: some of them, with all that is
-    below these.
+    Operands of a node that satisfies `stop` are not entered.
     """
-    found = {*known, *nodes}
-    stack = [*found.difference(known)]
+    found = {*nodes}
+    stack = [*found]
     while stack:
         node = stack.pop()
         if stop is None or not stop(node):
@@ -28,3 +24,20 @@ def below(
                     found.add(operand)
                     stack.append(operand)
     return sorted(found, key=attrgetter("id"))
+
+
+def swept(nodes: Iterable[Node]) -> list[Node]:
+    """`below` in one sweep over the graph: faster where most of it is found."""
+    wanted = {node.id: node for node in nodes}
+    if not wanted:
+        return []
+    last = max(wanted)
+    graph = wanted[last].graph.nodes[: last + 1]
+    found = bytearray(last + 1)
+    for number in wanted:
+        found[number] = 1
+    for node in reversed(graph):
+        if found[node.id]:
+            for operand in node.operands:
+                found[operand.id] = 1
+    return [*compress(graph, found)]

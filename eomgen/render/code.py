@@ -50,11 +50,15 @@ def _bound(tree: Expression, dialect: Dialect, names: Names) -> tuple[str, int]:
     if operator in INFIX:
         sign, level = INFIX[operator]
         first, binding = _bound(operands[0], dialect, names)
+        second, tight = _bound(operands[1], dialect, names)
         if binding < level:
             first = f"({first})"
-        return f"{first} {sign} {_guarded(operands[1], level, dialect, names)}", level
+        if tight <= level or tight == UNARY:
+            second = f"({second})"
+        return f"{first} {sign} {second}", level
     if operator == "negate":
-        return "-" + _guarded(operands[0], UNARY, dialect, names), UNARY
+        text, binding = _bound(operands[0], dialect, names)
+        return f"-{text}" if binding > UNARY else f"-({text})", UNARY
     if operator == "pi":
         return dialect.number.format("3.141592653589793"), ATOM
     arguments = ", ".join([_bound(e, dialect, names)[0] for e in operands])
@@ -64,9 +68,3 @@ def _bound(tree: Expression, dialect: Dialect, names: Names) -> tuple[str, int]:
 def _number(tree: Number, dialect: Dialect) -> tuple[str, int]:
     text = dialect.number.format(literal(abs(tree.value)))
     return (f"-{text}", UNARY) if tree.value < 0 else (text, ATOM)
-
-
-def _guarded(operand: Expression, level: int, dialect: Dialect, names: Names) -> str:
-    """A right operand: in parentheses unless it binds tighter than `level` and has no sign."""
-    text, binding = _bound(operand, dialect, names)
-    return text if binding > level and binding != UNARY else f"({text})"

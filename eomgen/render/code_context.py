@@ -15,7 +15,8 @@ from eomgen.render.grouped import codes, groups
 from eomgen.render.lowered import content
 from eomgen.render.names import escaped, prefix
 from eomgen.render.naming import components
-from eomgen.render.routines import Routine, routine
+from eomgen.render.records import Routine
+from eomgen.render.routines import routine
 
 WAVES = ("pair", "sine", "cosine")
 MANY_LANES, FEW_LANES = 32, 16  # multiples of the numbers in 64 bytes

@@ -29,7 +29,7 @@ CHANGED = frozenset(("sin", "cos", "power", "negate"))  # all others stay as the
 Name = Callable[[Expression], Value]  # makes an assignment of its argument
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Content:
     """What is in expressions, from left to right: names of values, arguments, operators."""
 

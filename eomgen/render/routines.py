@@ -25,10 +25,8 @@ from eomgen.render.code import Names, expression
 from eomgen.render.dialects import Dialect
 from eomgen.render.grouped import apart
 from eomgen.render.lanes import (
-    ROWS,
     Load,
     Store,
-    Wave,
     in_place,
     longest_body,
     runs,
@@ -37,130 +35,25 @@ from eomgen.render.lanes import (
 )
 from eomgen.render.lowered import Lowered, content, lowered, operations, surveyed
 from eomgen.render.naming import LANE, Components, Survey, names_of, own_names, survey
-from eomgen.render.pairs import WAVE_KINDS, groups, is_wave, pair
+from eomgen.render.pairs import WAVE_KINDS, groups, pair
 from eomgen.render.parts import Part, divided, whole
+from eomgen.render.records import (
+    WORK,
+    Argument,
+    Body,
+    Given,
+    Lanes,
+    Loop,
+    Pair,
+    Requirement,
+    Routine,
+    Step,
+    System,
+)
 from eomgen.render.sparing import sparing
 
 COUNTED = {"add": "+", "subtract": "-", "negate": "-", "multiply": "*", "divide": "/"}
 IN_MODEL = {"parameters": "m->p.{}", "constants": "m->{}"}  # how parts of functions read it
-WORK = "work"  # the array of values that cross between the parts of a function
-
-
-@dataclass(frozen=True)
-class Argument:
-    """A local variable `code` that holds component `index`, called `name`, of `source`.
-
-    `member`: its name in the interface, where `source` has named components.
-    """
-
-    code: str
-    source: str
-    index: int
-    name: str
-    member: str = ""
-
-
-@dataclass(frozen=True)
-class Given:
-    """An array that a loop over lanes reads; `fixed`: of literals."""
-
-    name: str
-    entries: tuple[str, ...]
-    fixed: bool
-
-
-@dataclass(frozen=True)
-class Step:
-    """One statement; `kind` says which fields are used.
-
-    `assign`; `sine` or `cosine` of an expression, `pair`: both, the cosine called `other`;
-    `require`; `solve` is a `System`, `alike` a `Loop`.
-    """
-
-    kind: str
-    name: str = ""
-    expression: str = ""
-    other: str = ""
-    scale: str = ""
-
-
-@dataclass(frozen=True)
-class System(Step):
-    """A linear system that is solved in a loop."""
-
-    values: tuple[tuple[str, int], ...] = ()  # the names that are read of the solution, and where
-    matrix: tuple[str, ...] = ()
-    right: tuple[str, ...] = ()
-    size: int = 0  # the number of equations
-
-
-@dataclass(frozen=True)
-class Loop(Step):
-    """A loop over lanes."""
-
-    size: int = 0  # how many there are
-    given: tuple[Given, ...] = ()
-    steps: tuple[Step, ...] = ()  # of kind `assign`, or `keep` in an array
-    kept: tuple[str, ...] = ()  # arrays that it fills
-
-
-@dataclass(frozen=True)
-class Body:
-    """Statements as text with all that they need: of a function, or of a part of one."""
-
-    arguments: tuple[Argument, ...]
-    steps: tuple[Step, ...]
-    stores: tuple[tuple[int, str], ...]  # slots of `WORK` that are filled, and with what
-    results: tuple[tuple[int, str], ...]  # where each goes, and what
-    uses: tuple[str, ...]  # which of `READ` and `WORK` are read
-
-    @property
-    def can_fail(self) -> bool:
-        """Whether a pivot is checked."""
-        return any(step.kind in ("require", "solve") for step in self.steps)
-
-
-@dataclass(frozen=True)
-class Lanes:
-    """A function for many states: its waves, and the rest in bodies over an array of `slots`.
-
-    runs: the rows of each argument that the bodies read, from the first to before the second.
-    """
-
-    waves: tuple[Wave, ...]
-    bodies: tuple[Body, ...]
-    slots: int
-    runs: tuple[tuple[str, int, int], ...]
-
-    @property
-    def wave_slots(self) -> int:
-        """The length of `WAVES`."""
-        return sum(len(w.names) for w in self.waves)
-
-    @property
-    def wave_sources(self) -> tuple[str, ...]:
-        """The arguments of which there are waves."""
-        return tuple(row for row in ROWS if any(w.source == row for w in self.waves))
-
-
-@dataclass(frozen=True)
-class Routine:
-    """A function as text; if it is long, `parts` compute it over an array of `slots` numbers."""
-
-    name: str
-    about: str
-    shape: tuple[int, ...]
-    body: Body
-    parts: tuple[Body, ...]
-    lanes: Lanes | None  # of a batch
-    slots: int
-    size: int  # the number of results
-    operators: frozenset[str]
-    operations: str  # such as `3 +  5 *  1 sin`
-    takes: tuple[str, ...]  # which of `ARGUMENTS` a caller passes
-    uses: tuple[str, ...]  # which of these are read
-    can_fail: bool  # a pivot is checked
-    base: str = ""  # a function that it calls; its results follow those of the body
 
 
 def routine(function: Function, program: Program, dialect: Dialect, given: Components) -> Routine:
@@ -325,7 +218,7 @@ class _Text:
                 yield from map(self.step, group)
             else:
                 sine, cosine, angle = both
-                yield Step("pair", self.names[sine], self.of(angle), self.names[cosine])
+                yield Pair("pair", self.names[sine], self.of(angle), self.names[cosine])
 
     def bare(self, array: str) -> str:
         """An array without the lane."""
@@ -344,13 +237,10 @@ class _Text:
     def step(self, statement: Statement) -> Step:
         """One statement."""
         match statement:
-            case Assign(name, tree) if self.dialect.pairs and is_wave(statement):
-                assert isinstance(tree, Apply)
-                return Step(WAVE_KINDS[tree.operator], self.names[name], self.of(tree.operands[0]))
             case Assign(name, tree):
-                return Step("assign", self.names[name], self.of(tree))
+                return self.assigned(self.names[name], tree)
             case RequirePositive(value, scale):
-                return Step("require", self.names[value.name], scale=self.of(scale))
+                return Requirement("require", self.names[value.name], scale=self.of(scale))
             case Alike(lanes, given, statements, kept):
                 return Loop(
                     "alike",
@@ -368,6 +258,12 @@ class _Text:
                     right=tuple(map(self.of, right)),
                     size=statement.size,
                 )
+
+    def assigned(self, code: str, tree: Expression) -> Step:
+        """The variable `code` of an expression."""
+        if self.dialect.pairs and isinstance(tree, Apply) and tree.operator in WAVE_KINDS:
+            return Step(WAVE_KINDS[tree.operator], code, self.of(tree.operands[0]))
+        return Step("assign", code, self.of(tree))
 
     def solution(self, unknowns: Sequence[str]) -> tuple[tuple[str, int], ...]:
         """The names of what is read of a solution, and where it stands."""
