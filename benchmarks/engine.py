@@ -61,8 +61,8 @@ random order, over every way to write it and every compiler (`gcc -O3 -march=nat
 inertias; the tree is a free body (three slides, three turns) with four legs of six joints. A batch
 is 64 states; its time is that of one, and its sines are its own, with and without `fast trig`.
 Limbs that are alike fill the vectors of a single state too, so a batch gains less on the tree;
-`limb after limb` is the code of one state without such vectors. `AVX2`: without the wider vectors
-that `native` may have."""
+`limb after limb` is the code of one state without such vectors, which stands in the same file as
+the batch. `AVX2`: without the wider vectors that `native` may have."""
 DERIVATION = """\
 Processor seconds, the least of up to three, of ours and CasADi's also of some rounds. Ours and
 CasADi's end with the C of the accelerations (solution included), SymPy's and SymEngine's with the C

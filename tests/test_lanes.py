@@ -10,12 +10,22 @@ from scenes import program_of
 from tools import tool
 
 from eomgen.numerics.compiled import build
-from eomgen.program import Apply, Assign, Function, Read, RequirePositive, Value, Variable, operands
+from eomgen.program import (
+    Apply,
+    Assign,
+    Function,
+    Read,
+    RequirePositive,
+    Solve,
+    Value,
+    Variable,
+    operands,
+)
 from eomgen.render.code_context import Code, Style, coded
 from eomgen.render.lanes import OF_A_CHAIN, Load, Store, in_place, longest_body, waves, without
 from eomgen.render.lowered import content, defined, lowered
 from eomgen.render.pairs import groups
-from eomgen.render.parts import divided, whole
+from eomgen.render.parts import LARGEST_SYSTEM, divided, whole
 from eomgen.render.sparing import sparing
 from eomgen.render.targets import TARGETS, render
 from eomgen.render.templating import environment
@@ -129,6 +139,89 @@ def test_loops_are_short_where_the_lanes_would_wait_for_a_chain():
     assert longest_body(lowered(waiting), 1000) == OF_A_CHAIN
     assert longest_body(lowered(waiting), 7) == 7
     assert longest_body(chain, 1000) in (OF_A_CHAIN, 1000)
+
+
+def system(names, scale, right):
+    """A matrix with `scale` on its diagonal, at every state another one."""
+    size = len(names)
+    q = [Read("state", i) for i in range(size)]
+    rows = [[op("sin", q[j]) for j in range(i)] + [op("add", scale, q[i])] for i in range(size)]
+    return Solve(tuple(names), tuple(e for row in rows for e in row), tuple(right))
+
+
+def two_systems(size):
+    """The second has what the first has given, and two right sides; values cross both."""
+    q = [Read("state", i) for i in range(size)]
+    first, second = [f"x{i}" for i in range(size)], [f"y{i}" for i in range(2 * size)]
+    right = [*map(Value, reversed(first)), *(op("multiply", Value("a"), x) for x in q)]
+    statements = (
+        Assign("a", op("exp", q[0])),
+        system(first, n(9), [op("add", Value("a"), x) for x in q]),
+        Assign("b", op("multiply", Value("a"), Value("x1"))),
+        Solve(tuple(second), system(second[:size], n(7), ()).matrix, tuple(right)),
+        Assign("c", op("add", Value("b"), Value("y0"))),
+    )
+    results = (Value("c"), Value("a"), *map(Value, second[2:]), Value("x2"), q[1])
+    function = Function("outputs", "", (len(results),), statements, results)
+    names = [Variable(f"q{i}") for i in range(size)]
+    return program("two", (function,), coordinates=tuple(names), speeds=tuple(names))
+
+
+@pytest.mark.parametrize("limit", [10**6, 2, 1])
+def test_systems_are_solved_between_parts(limit):
+    """Every entry stands in its slot when its part ends, and what is solved behind it."""
+    size = 4
+    rest = sparing(lowered(two_systems(size).functions[0]))
+    cut = divided(rest, limit, in_place=True)
+    solves = [s for s in rest.function.statements if isinstance(s, Solve)]
+    held = {}
+    for part in cut.parts:
+        assert not any(isinstance(s, Solve) for s in part.statements)
+        played(part, held)
+        if part.elimination:
+            solve, found = solves.pop(0), part.elimination
+            entries = [*range(found.matrix, found.right + len(solve.right))]
+            assert [held[slot] for slot in entries] == [*solve.matrix, *solve.right]
+            held |= {found.right + k: Value(name) for k, name in enumerate(solve.names)}
+    assert not solves
+    results = rest.function.results
+    assert tuple(held[i] for i in range(len(results))) == results
+
+
+def test_what_is_too_large_for_a_stack_is_solved_lane_by_lane():
+    size = LARGEST_SYSTEM + 1
+    assert divided(lowered(two_systems(size).functions[0]), 10**6, in_place=True) is None
+
+
+@pytest.mark.parametrize("style", [Style(batch=True), Style(batch=True, longest=2)])
+def test_systems_of_many_states_give_what_each_gives_alone(style):
+    tool("cc")
+    made = two_systems(13)
+    files = render(coded(made, style), TARGETS["c"], environment())
+    assert "bad |= lanes_solve_13(" in files["two.c"]
+    library = build(files, made)
+    states = np.random.default_rng(1).uniform(-0.4, 0.4, (26, 41))  # diagonally dominant
+    states[5, 7] = -20.0  # not positive there
+    found, status = library.batch(
+        "outputs", 0.0, states, np.zeros((0, 41)), model=library.model(())
+    )
+    assert status == 1
+    for k, state in enumerate(states.T):
+        if k == 7:
+            assert np.isnan(found[:, k]).all()
+            continue
+        np.testing.assert_allclose(found[:, k], _alone(state[:13]), rtol=1e-12)
+
+
+def _alone(q):
+    """The results of `two_systems` by NumPy."""
+    size = len(q)
+    lower = np.tril(np.tile(np.sin(q), (size, 1)), -1)
+    full = lower + lower.T + np.diag(q)
+    a = np.exp(q[0])
+    x = np.linalg.solve(full + 9 * np.eye(size), a + q)
+    y = np.linalg.solve(full + 7 * np.eye(size), np.column_stack([x[::-1], a * q])).T.ravel()
+    return np.array([a * x[1] + y[0], a, *y[2:], x[2], q[1]])
 
 
 def test_a_pivot_may_be_a_wave():

@@ -72,6 +72,8 @@ ROWS = (
     Row("ours, batch, folded", ("--fold", "--batch"), BATCH),
     Row("ours, batch, folded, fast trig", ("--fold", "--batch", "--fast-trig"), BATCH),
     Row("ours, batch, folded, AVX2", ("--fold", "--batch"), BATCH, AVX2),
+    Row("ours, folded, limb after limb, AVX2", ("--fold", "--batch"), PREPARED, AVX2),
+    Row("the same, fast trig, AVX2", ("--fold", "--batch", "--fast-trig"), PREPARED, AVX2),
 )
 
 

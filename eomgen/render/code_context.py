@@ -198,6 +198,7 @@ def c(subject: Program | Code) -> dict[str, object]:
         "waves": waves,
         "lane_waves": lane_waves,
         "lanes": _lanes(context["functions"]),
+        "lane_systems": _lane_systems(context["functions"]),
         "own_waves": own_waves,
         "math": tuple(calls),
         "open_codes": tuple(open_codes.values()),  # arguments of the function that sets parameters
@@ -227,6 +228,12 @@ def _lane_waves(functions: Iterable[Routine]) -> tuple[str, ...]:
     first = {wave.kind for each in lanes for wave in each.waves}
     found = first | {s.kind for each in lanes for body in each.bodies for s in body.steps}
     return tuple(kind for kind in WAVES if kind in found)
+
+
+def _lane_systems(functions: Iterable[Routine]) -> tuple[int, ...]:
+    """The sizes of systems that are solved for many states at once."""
+    bodies = [body for f in functions if f.lanes for body in f.lanes.bodies]
+    return tuple(sorted({b.elimination.size for b in bodies if b.elimination}))
 
 
 def _c_constant(value: sp.Expr) -> str:

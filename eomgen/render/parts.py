@@ -2,21 +2,34 @@
 
 Values that cross from one part to a later one live in slots of an array, which the parts share;
 so do the results, in the first slots, until every pivot has been checked. What has no pivots may
-give its results away as they come.
+give its results away as they come. A part may end with a linear system, which is solved in the
+slots before the next part reads them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
+from itertools import pairwise
 
-from eomgen.program import Alike, Expression, Statement, Value
+from eomgen.program import Alike, Expression, Solve, Statement, Value
 from eomgen.render.lowered import Content, Lowered, content, defined, merged
 
 # statements of a part; fewer cost more to hand on than a compiler gains
 MOST = 200
+LARGEST_SYSTEM = 60  # equations that are solved in slots: more would take much of a stack
 Slots = tuple[tuple[Expression, int], ...]
+
+
+@dataclass(frozen=True)
+class Elimination:
+    """A x = b in slots: from `matrix` on the lower triangle of A, from `right` on b, then x."""
+
+    size: int
+    columns: int
+    matrix: int
+    right: int
 
 
 @dataclass(frozen=True)
@@ -28,6 +41,7 @@ class Part:
     stores: Slots
     results: Slots  # that are given away: the number of each
     content: Content  # of the statements, in order, and of the results
+    elimination: Elimination | None = None  # which is solved behind them
 
 
 @dataclass(frozen=True)
@@ -52,17 +66,26 @@ def divided(
 
     No part has more than `MOST`. Loops over lanes have made a function short. at_once: results are
     given away as they come; in_place: a part fills slots before it has read all others, so that
-    what it reads for the last time is kept to its end.
+    what it reads for the last time is kept to its end, and its systems are solved behind it.
     """
     statements = lowered.function.statements
-    if len(statements) <= longest or any(isinstance(s, Alike) for s in statements):
+    systems = [i for i, s in enumerate(statements) if in_place and _is_apart(s)]
+    if any(isinstance(s, Alike) for s in statements):
+        return None
+    if len(statements) <= longest and not systems:
         return None
     count = max(-(-2 * len(statements) // longest), -(-len(statements) // MOST))
-    size = -(-len(statements) // count)
-    starts = range(0, len(statements), size)
-    chunks = [statements[i : i + size] for i in starts]
-    contents = [lowered.contents[i : i + size] for i in starts]
+    size = -(-len(statements) // count) if len(statements) > longest else len(statements)
+    bounds = sorted({*range(0, len(statements), size), *(i + 1 for i in systems)})
+    pieces = [slice(*ends) for ends in pairwise([*bounds, len(statements)])]
+    chunks = [statements[piece] for piece in pieces]
+    contents = [lowered.contents[piece] for piece in pieces]
     return _connected(chunks, contents, lowered.function.results, at_once, in_place)
+
+
+def _is_apart(statement: Statement) -> bool:
+    """Whether a statement is a system that is solved in slots."""
+    return isinstance(statement, Solve) and statement.size <= LARGEST_SYSTEM
 
 
 def _connected(
@@ -73,8 +96,11 @@ def _connected(
     in_place: bool,
 ) -> Divided:
     """The parts with their loads and stores; a slot serves again when its value is dead."""
+    systems = [_system(chunk) if in_place else None for chunk in chunks]
+    chunks = [c[:-1] if solve else c for c, solve in zip(chunks, systems, strict=True)]
     made = [[n for s in chunk for n in defined(s)] for chunk in chunks]
     place = {name: i for i, found in enumerate(made) for name in found}
+    place |= {n: i + 1 for i, solve in enumerate(systems) if solve for n in solve.names}
     given = _results_by_part(results, place, len(chunks))
     known = [
         merged((*inside, content([e for e, _ in kept])))
@@ -85,15 +111,40 @@ def _connected(
     shelf = _Shelf(0 if at_once else len(results))
     parts = []
     for i, chunk in enumerate(chunks):
-        loads = [(name, shelf.slots[name]) for name in reads[i] if place[name] < i]
+        own = {*made[i]}
+        loads = [(name, shelf.slots[name]) for name in reads[i] if name not in own]
         dead = [name for name, _ in loads if last[name] == i]
         shelf.clear(() if in_place else dead)
-        stores = tuple((Value(n), shelf.put(n)) for n in made[i] if last.get(n, i) > i)
+        crossing = tuple((Value(n), shelf.put(n)) for n in made[i] if last.get(n, i) > i)
+        elimination, entries = _in_slots(systems[i], shelf, last)
         shelf.clear(dead if in_place else ())
         kept, away = ((), given[i]) if at_once else (given[i], ())
         # results first: what they read may stand in a slot that is filled again
-        parts.append(Part(chunk, tuple(loads), kept + stores, away, known[i]))
+        stores = kept + crossing + entries
+        parts.append(Part(chunk, tuple(loads), stores, away, known[i], elimination))
     return Divided(tuple(parts), shelf.size)
+
+
+def _system(chunk: Sequence[Statement]) -> Solve | None:
+    """The system that a chunk ends with."""
+    solve = chunk[-1] if chunk else None
+    return solve if isinstance(solve, Solve) and _is_apart(solve) else None
+
+
+def _in_slots(
+    solve: Solve | None, shelf: _Shelf, read: Container[str]
+) -> tuple[Elimination | None, Slots]:
+    """Where a system stands, and its entries; the names that are `read` stand where they come."""
+    if solve is None:
+        return None, ()
+    triangle, entries = len(solve.matrix), solve.matrix + solve.right
+    first = shelf.block(len(entries))
+    for k, name in enumerate(solve.names):
+        if name in read:
+            shelf.slots[name] = first + triangle + k
+    columns = len(solve.right) // solve.size
+    found = Elimination(solve.size, columns, first, first + triangle)
+    return found, tuple((e, first + k) for k, e in enumerate(entries))
 
 
 @dataclass
@@ -111,6 +162,11 @@ class _Shelf:
             self.size += 1
         self.slots[value] = heappop(self.free)
         return self.slots[value]
+
+    def block(self, size: int) -> int:
+        """The first of some new slots, one behind the other."""
+        self.size += size
+        return self.size - size
 
     def clear(self, values: Iterable[str]) -> None:
         """Free the slots of dead values."""

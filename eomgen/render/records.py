@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eomgen.render.lanes import ROWS, Wave
+from eomgen.render.parts import Elimination
 
 WORK = "work"  # the array of values that cross between the parts of a function
 
@@ -88,6 +89,7 @@ class Body:
     stores: tuple[tuple[int, str], ...]  # slots of `WORK` that are filled, and with what
     results: tuple[tuple[int, str], ...]  # where each goes, and what
     uses: tuple[str, ...]  # which of `READ` and `WORK` are read
+    elimination: Elimination | None = None  # of a system behind them
 
     @property
     def can_fail(self) -> bool:

@@ -186,7 +186,7 @@ class _Text:
                     steps.append(Step("store", str(place), self.of(tree)))
                 case tuple():
                     steps.extend(self.steps(event))
-        return Body((), tuple(steps), (), (), tuple(used))
+        return Body((), tuple(steps), (), (), tuple(used), part.elimination)
 
     def row(self, read: Read) -> str:
         """Where the lane of an argument stands."""
