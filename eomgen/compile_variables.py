@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import sympy as sp
 
 from eomgen.dimension import NONE, TIME, Dimension
@@ -31,20 +33,27 @@ def moving(model: Model, of: Coordinate | Prescribed) -> Variable:
     return variable(of.name, of.description, model.initial.get(of.name))
 
 
-def _initial(model: Model, speed: Speed) -> sp.Expr | None:
-    """The speed's value where the spec gives the coordinates, rates and parameters it needs."""
+def _known(model: Model) -> dict[sp.Symbol, sp.Expr]:
+    """The coordinates, rates and parameters whose values the spec gives, at t = 0."""
     values: dict[sp.Symbol, sp.Expr] = {TIME_SYMBOL: sp.S.Zero}
     for c in model.coordinates:
         values |= {s: model.initial[s.name] for s in (c.symbol, c.rate) if s.name in model.initial}
-    values |= {p.symbol: p.value for p in model.parameters if p.value is not None}
-    value = speeds.spelled_out(model, speed.formula).xreplace(values)
+    return values | {p.symbol: p.value for p in model.parameters if p.value is not None}
+
+
+def _initial(model: Model, speed: Speed, known: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | None:
+    """The speed's value where that is known which it needs."""
+    value = speeds.spelled_out(model, speed.formula).xreplace(known)
     return None if value.free_symbols else value
 
 
 def of_speeds(model: Model) -> tuple[Variable, ...]:
     """The declared speeds, or one rate for each coordinate."""
     if model.speeds:
-        return tuple(variable(s.name, s.description, _initial(model, s)) for s in model.speeds)
+        known = _known(model)
+        return tuple(
+            variable(s.name, s.description, _initial(model, s, known)) for s in model.speeds
+        )
     return tuple(
         Variable(
             c.rate.name,
