@@ -233,6 +233,18 @@ def test_files_are_written_and_never_overwritten(call):
     assert {f: Path(f).read_bytes() for f in before} == before  # and the same bytes
 
 
+def test_one_result_is_not_written_over_another(call):
+    words = ("--t-end", 1, "-o", "d.csv", "--plot", "./d.csv", "--force")
+    said = simulate(call, "simple_pendulum", *words, code=2)
+    assert "d.csv: is asked for twice; give each result its own file" in said.errors
+    assert not Path("d.csv").exists()
+
+
+def test_an_input_that_a_scene_has_not_is_said_so(call):
+    said = simulate(call, "simple_pendulum", "--input", "F=1", code=2)
+    assert "inputs: unknown name 'F'; there are none" in said.errors
+
+
 @pytest.mark.slow
 def test_a_plot_has_a_panel_for_each_unit(call):
     simulate(call, "quarter_car", "--t-end", 1, "--plot", "p.svg")
