@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import random
 import re
 import signal
 import subprocess
@@ -21,7 +22,7 @@ from scipy.special import ellipk
 from tools import library, tool
 
 from eomgen.cache_folder import VARIABLE, root
-from eomgen.numerics import cache
+from eomgen.numerics import adaptive, cache
 from eomgen.simulate_method import rounded_down
 
 
@@ -231,6 +232,18 @@ def test_files_are_written_and_never_overwritten(call):
         assert f"{file}: is in the way; choose another file, or --force" in said.errors
     simulate(call, "simple_pendulum", *words, "--force")
     assert {f: Path(f).read_bytes() for f in before} == before  # and the same bytes
+
+
+def test_power_of_rounding_alone_is_not_halved_for():
+    """A force that moves a bead on a turning wire does no work on Jacobi's energy, to rounding."""
+    chance, seen = random.Random(1), []
+
+    def flow(t, state):
+        seen.append(t)
+        return np.array([3.0, 1e-17 * chance.uniform(-1, 1)])
+
+    assert abs(adaptive.work_of(flow, 0.0, 0.1, lambda t: np.zeros(2))) < 1e-17
+    assert len(seen) == 12  # the whole and its halves
 
 
 def test_one_result_is_not_written_over_another(call):
