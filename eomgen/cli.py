@@ -354,7 +354,7 @@ def main() -> NoReturn:
 def _leave_unwritten(error: OSError) -> NoReturn:
     """End where the disk takes no more; what is left in the stream is not tried again."""
     click.echo(f"eomgen: cannot be written: {error.strerror}; make room", err=True)
-    sys.stdout = None  # type: ignore[assignment]
+    sys.stdout = None
     sys.exit(UsageError.exit_code)
 
 
