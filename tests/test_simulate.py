@@ -234,6 +234,37 @@ def test_files_are_written_and_never_overwritten(call):
     assert {f: Path(f).read_bytes() for f in before} == before  # and the same bytes
 
 
+SWING = """eom: 1
+system: Oscillator of one second
+space: line
+gravity: 0
+parameters: {m: 1 kg, k: 39.47841760435743 N/m}
+coordinates: {x: m}
+bodies: {b: {mass: m, at: x}}
+springs: [{along: x, stiffness: k}]
+initial: {x: 1 m, x': 0 m/s}
+"""
+
+
+@pytest.mark.parametrize(
+    ("words", "times"),
+    [
+        (("--t-end", 1, "--output-step", 5), [0, 1]),
+        (("--t-end", 3, "--output-step", 1), [0, 1, 2, 3]),
+        (("--t-end", 2.5, "--output-step", 1), [0, 1, 2, 2.5]),
+        (("--t-end", 3, "--output-step", 1, "--step", 0.001), [0, 1, 2, 3]),
+        (("--t-end", 2.5, "--output-step", 1, "--step", 0.001), [0, 1, 2, 2.5]),
+        (("--t-end", 2.5004, "--output-step", 1, "--step", 0.001), [0, 1, 2, 2.5004]),
+        (("--t-end", 2, "--output-step", 5, "--step", 0.001), [0, 2]),
+    ],
+)
+def test_rows_a_period_apart_do_not_hide_the_energy(call, words, times):
+    said = call("simulate", "-", *words, stdin=SWING)
+    assert (said.code, "W-ENERGY" in said.errors) == (0, False), said.errors
+    rows = list(csv.reader(StringIO(said.output)))[1:]
+    assert [float(row[0]) for row in rows] == pytest.approx(times, abs=1e-12)
+
+
 def test_power_of_rounding_alone_is_not_halved_for():
     """A force that moves a bead on a turning wire does no work on Jacobi's energy, to rounding."""
     chance, seen = random.Random(1), []
