@@ -5,6 +5,7 @@ What a command needs is imported when it runs, so that help answers at once.
 
 from __future__ import annotations
 
+import errno
 import gc
 import sys
 from dataclasses import replace
@@ -47,6 +48,7 @@ from eomgen.errors import EomgenError, UsageError
 from eomgen.wanted import Wanted, wanted
 
 COLLECT_RARELY = 1_000_000  # a command lives for a second; looking for circles would take a tenth
+FULL = (errno.ENOSPC, errno.EDQUOT)
 SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 NOTES = frozenset(("latex", "text"))  # targets that show the closed form
 TARGET_NAMES = ("latex", "c", "python", "text")
@@ -342,7 +344,18 @@ def main() -> NoReturn:
     except EomgenError as error:
         click.echo(f"eomgen: {error}", err=True)
         sys.exit(error.exit_code)
+    except OSError as error:
+        if error.errno not in FULL:
+            raise
+        _leave_unwritten(error)
     sys.exit(0)
+
+
+def _leave_unwritten(error: OSError) -> NoReturn:
+    """End where the disk takes no more; what is left in the stream is not tried again."""
+    click.echo(f"eomgen: cannot be written: {error.strerror}; make room", err=True)
+    sys.stdout = None
+    sys.exit(UsageError.exit_code)
 
 
 if __name__ == "__main__":

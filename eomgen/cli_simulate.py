@@ -103,9 +103,11 @@ def _sink(output: str | None, wishes: dict[str, Any]) -> Iterator[IO[str] | None
     Raises:
         UsageError: a file is in the way, or cannot be written.
     """
-    for path in (output, wishes["plot"], wishes["animate"]):
-        if path not in (None, files.STANDARD):
-            _must_be_free(Path(path), wishes["force"])
+    given = (output, wishes["plot"], wishes["animate"])
+    paths = [Path(path) for path in given if path not in (None, files.STANDARD)]
+    for path in paths:
+        _must_be_free(path, wishes["force"])
+    _must_differ(paths)
     if output is None or output == files.STANDARD:
         yield None if output is None else sys.stdout
         return
@@ -119,6 +121,14 @@ def _must_be_free(path: Path, force: bool) -> None:
         raise UsageError(f"{path}: is a folder; give a file")
     if path.is_file() and not force:
         raise UsageError(f"{path}: is in the way; choose another file, or --force")
+
+
+def _must_differ(paths: list[Path]) -> None:
+    """Raise UsageError where one result would be written over another."""
+    places = [path.resolve() for path in paths]
+    for path, place in zip(paths, places, strict=True):
+        if places.count(place) > 1:
+            raise UsageError(f"{path}: is asked for twice; give each result its own file")
 
 
 def _opened(path: str) -> IO[str]:

@@ -28,12 +28,18 @@ def read(path: str) -> bytes:
     """
     try:
         if path == STANDARD:
-            return sys.stdin.buffer.read(LARGEST)
+            return _standard_input()
         with Path(path).open("rb") as stream:
             return stream.read(LARGEST)
     except OSError as error:
         remedy = "give a file, or - for standard input"
         raise UsageError(f"cannot be read: {error.strerror}; {remedy}") from error
+
+
+def _standard_input() -> bytes:
+    if sys.stdin is None:  # Python's word for a stream that was closed before it started
+        raise UsageError("standard input is closed; give a file")
+    return sys.stdin.buffer.read(LARGEST)
 
 
 def shown(path: str) -> str:

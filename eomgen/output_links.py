@@ -49,6 +49,29 @@ REASONS = {  # language -> (a part of `Formulation.why`, the same in that langua
     ),
 }
 
+WARNINGS = {  # language -> (a warning of the analysis, the same in that language)
+    "es": (
+        (
+            r"W-RANK: constraint (.+) depends on (.+) \(rank (\d+) of (\d+)\); dropped\. "
+            r"Reaction forces of (.+) are not unique\.",
+            r"W-RANK: la ligadura \1 depende de \2 (rango \3 de \4); se omite. "
+            r"Las fuerzas de reacción de \5 no son únicas.",
+        ),
+        (
+            r"W-SING: constraint (.+) loses rank near (.+)\. "
+            r"Eliminated coordinates are unsafe there, and reaction forces are not unique\.",
+            r"W-SING: la ligadura \1 pierde rango cerca de \2. "
+            r"Allí no conviene eliminar coordenadas, y las fuerzas de reacción no son únicas.",
+        ),
+        (
+            r"W-SING: constraints (.+) lose rank near (.+)\. "
+            r"Eliminated coordinates are unsafe there, and reaction forces are not unique\.",
+            r"W-SING: las ligaduras \1 pierden rango cerca de \2. "
+            r"Allí no conviene eliminar coordenadas, y las fuerzas de reacción no son únicas.",
+        ),
+    ),
+}
+
 
 def reason(why: str, language: str) -> str:
     """Why a formulation was chosen; a part without a translation stays as the tool says it."""
@@ -81,7 +104,7 @@ def links(report: Report, chosen: Formulation, language: str) -> Links:
             for found in report.integrability.combinations
         ),
         is_time_counted=report.integrability.with_time,
-        warnings=freedom.warnings,
+        warnings=tuple(_said(w, WARNINGS.get(language, ())) for w in freedom.warnings),
         sentences=(said,),
     )
 

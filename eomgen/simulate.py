@@ -16,6 +16,7 @@ from eomgen.simulate_method import Choice
 from eomgen.simulate_setup import Setup, contact_scene
 
 ROWS = 400  # of the output, where no step of it is given
+LEAST_ROWS = 100  # that tell how large the energies become
 MOST_ROWS = 10_000_000
 NEARLY = 1e-9
 BOTH = ("constraint_residuals", "constraint_rates")
@@ -26,7 +27,6 @@ class Verdict:
     """What a run was worth so far; energies in joule."""
 
     steps: int = 0
-    rows: int = 0
     time: float = 0.0
     state: Array = field(default_factory=lambda: np.zeros(0))
     stopped: int = 0
@@ -157,6 +157,31 @@ def _whole_steps(gap: float, step: float, *, is_exact: bool) -> float:
     return max(1, count) * step
 
 
+def closer(outputs: Array, choice: Choice) -> tuple[Array, int]:
+    """Times near enough for the scale of the energy, and how many stand for one of `outputs`.
+
+    Rows a period apart would see a motion that stands still. Steps stay whole.
+    """
+    gap, count = float(outputs[1] - outputs[0]), len(outputs) - 1
+    parts = ceil(LEAST_ROWS / count)
+    if choice.is_fixed:
+        parts = _whole_parts(gap / choice.step, parts)
+    if parts == 1:
+        return outputs, 1
+    between = outputs[:-2, None] + gap * np.arange(parts) / parts
+    left = ceil(float(outputs[-1] - outputs[-2]) / gap * parts - NEARLY)  # the last may be shorter
+    last = outputs[-2] + gap * np.arange(left) / parts
+    return np.concatenate([between.ravel(), last, outputs[-1:]]), parts
+
+
+def _whole_parts(steps: float, least: int) -> int:
+    """Into how many parts of whole steps so many steps go; 1 where it is far from `least`."""
+    count = round(steps)
+    if abs(steps - count) > NEARLY * max(1, count):
+        return 1
+    return next((n for n in range(min(least, count), 10 * least) if count % n == 0), 1)
+
+
 def judge(setup: Setup, verdict: Verdict, found: Rows) -> None:
     """Take more rows into the verdict."""
     verdict.steps += found.steps
@@ -168,7 +193,6 @@ def judge(setup: Setup, verdict: Verdict, found: Rows) -> None:
         verdict.tally[bit] = (seen + count, since)
     if not len(found.times):
         return
-    verdict.rows += len(found.times)
     verdict.time, verdict.state = float(found.times[-1]), found.states[-1]
     _energies(setup, verdict, found)
     for name in BOTH:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -49,14 +49,12 @@ class Job:
     setup: Setup
     choice: Choice
     outputs: Array
+    every: int  # of the rows at `outputs` one is shown; the others are for the verdict
     verdict: Verdict = field(default_factory=Verdict)
     kept: list[Rows] = field(default_factory=list)  # for drawings
     seconds: float = 0.0
-
-    @property
-    def rows(self) -> int:
-        """Rows so far."""
-        return self.verdict.rows
+    computed: int = 0
+    rows: int = 0  # that were shown so far
 
     def head(self) -> str:
         """The first line of the CSV."""
@@ -69,12 +67,22 @@ class Job:
         for found in simulate.rows(self.setup, self.choice, self.outputs):
             simulate.judge(self.setup, self.verdict, found)
             self.seconds = time.monotonic() - since
+            found = self._wanted(found)
             if self.request.plot or self.request.animate:
                 self.kept.append(found)
             text = ""
             if len(found.times):
                 text = simulate_table.csv_rows(simulate_table.values(self.setup, found))
             yield (self.verdict.time - start) / (end - start), text
+
+    def _wanted(self, found: Rows) -> Rows:
+        """Without the rows that were computed for the verdict alone."""
+        places = self.computed + np.arange(len(found.times))
+        self.computed += len(found.times)
+        chosen = (places % self.every == 0) | (places == len(self.outputs) - 1)
+        self.rows += int(np.sum(chosen))
+        works = found.works[chosen] if len(found.works) else found.works
+        return replace(found, times=found.times[chosen], states=found.states[chosen], works=works)
 
     def beginning(self) -> list[str]:
         """What is going to be done."""
@@ -148,7 +156,7 @@ def job(study: Study, request: Request) -> Job:
     outputs = simulate.outputs_of(
         (start.time, start.time + request.t_end), choice, request.output_step
     )
-    return Job(request, made, choice, outputs)
+    return Job(request, made, choice, *simulate.closer(outputs, choice))
 
 
 def _wish(study: Study, request: Request) -> Wish:

@@ -218,7 +218,8 @@ class _Reader:
         for name in given:
             if name not in listed:
                 near = difflib.get_close_matches(name, listed, 1, 0.6)
-                hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(listed)}"
+                known = f"known: {', '.join(listed)}" if listed else "there are none"
+                hint = f"did you mean {near[0]!r}?" if near else known
                 self.wrong(f"{what}: unknown name {name!r}; {hint}")
 
     def number(self, value: Any, what: str) -> sp.Expr:

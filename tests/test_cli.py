@@ -392,6 +392,26 @@ def test_exit_codes_reach_the_shell():
     assert complained == "eomgen: 'a.b' is not a name; use letters, digits and _, no suffix\n"
 
 
+def through_a_shell(line, text=""):
+    """Exit code and errors of a line for the shell in which `$@` is our program."""
+    words = ("sh", "-c", line, "sh", *eomgen())
+    running = start(*words, standard_input=subprocess.PIPE)
+    complained = running.communicate(text, timeout=60)[1]
+    return running.returncode, complained
+
+
+def test_closed_standard_input_is_named():
+    said = through_a_shell('"$@" check - <&-')
+    assert said == (2, "<stdin>: error: standard input is closed; give a file\n")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device that is full is of Linux")
+@pytest.mark.parametrize("words", ["derive -", "schema", "generate - -t c -o -"])
+def test_a_full_disk_is_named(words):
+    said = through_a_shell(f'"$@" {words} >/dev/full', PENDULUM)
+    assert said == (2, "eomgen: cannot be written: No space left on device; make room\n")
+
+
 def test_a_terminal_without_unicode_is_no_accident():
     code, said, complained = finished("derive", "-", text=PENDULUM, PYTHONIOENCODING="ascii")
     assert (code, complained) == (0, "")

@@ -13,11 +13,13 @@ from tools import tool
 
 from eomgen.errors import UsageError
 from eomgen.model import Description
-from eomgen.render import notes_page, words
+from eomgen.render import notes_data, notes_page, words
 from eomgen.render.latex_text import escaped
 from eomgen.render.notes import Notes, latex_context, text_context
 from eomgen.render.targets import TARGETS, render
 from eomgen.render.templating import environment
+from eomgen.spec.reader import Scalar
+from eomgen.spec.units import parse_unit
 
 CHECK = "checked: Lagrange = Newton-Euler_at 50 % of states"
 ORDER = [
@@ -85,6 +87,20 @@ def test_values_come_with_the_unit_that_they_are_in():
     assert float(amplitude.value) == float(shown["A_0"][0])
     assert shown["A_0"][1] == r"\mathrm{m}"
     assert shown["g"] == ("9.81", r"\mathrm{m/s^{2}}")
+
+
+@pytest.mark.parametrize("name", sorted(notes_data.COHERENT))
+def test_a_unit_that_is_left_as_it_is_counts_one_in_si(name):
+    assert parse_unit(Scalar(name, 1, 1)).value == 1
+
+
+@pytest.mark.parametrize(
+    ("unit", "shown"),
+    [("Ohm", "Ohm"), ("N*m/T", "N*m/T"), ("\u03a9", "\u03a9"), ("mm", "m"), ("min", "s")],
+)
+def test_the_unit_of_a_value_is_the_authors_where_it_is_coherent(unit, shown):
+    dimension = parse_unit(Scalar(unit, 1, 1)).dimension
+    assert notes_data.si_unit(Description(unit, dimension)) == shown
 
 
 def test_the_text_shows_the_derivatives_only_when_asked():

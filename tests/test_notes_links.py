@@ -15,6 +15,8 @@ from test_notes import compiled, is_text
 from eomgen import compile, formulation, output_links
 from eomgen.algebra.closed import Evaluation
 from eomgen.analysis import cards
+from eomgen.analysis.rank import Dependency
+from eomgen.analysis.singular import Singularity
 from eomgen.formulation import Formulation
 from eomgen.mechanics import lagrange
 from eomgen.mechanics.equations import multiplier_name, virtual_name
@@ -244,6 +246,25 @@ def test_the_reason_of_a_formulation_is_said_in_the_language_of_the_page(name):
 
 def test_a_reason_without_a_translation_stays():
     assert output_links.reason("W-NEW: told; constant rank", "es") == "W-NEW: told; rango constante"
+
+
+def test_warnings_are_said_in_the_language_of_the_page():
+    known = study_of("four_bar").links
+    at = (("q1", 0.0), ("q2", 1.5))
+    freedom = replace(
+        known.scene.report.freedom,
+        dependencies=(Dependency("b.y", ("a.x", "a.y")),),
+        singularities=(Singularity(("a.x",), at), Singularity(("a.x", "b.y"), at)),
+    )
+    report = replace(known.scene.report, freedom=freedom)
+    assert links(report, known.chosen, "en").warnings == freedom.warnings
+    said = links(report, known.chosen, "es").warnings
+    assert len(said) == 3
+    for before, after in zip(freedom.warnings, said, strict=True):
+        assert not LEFT.search(after)
+        assert after[:7] == before[:7]
+        found = [re.findall(r"a\.[xy]|b\.y|q1 = 0|q2 = 1.5|\b[23]\b", w) for w in (before, after)]
+        assert found[0] == found[1]
 
 
 # --- multipliers

@@ -35,6 +35,15 @@ def test_errors_are_those_shown(tmp_path, monkeypatch):
     assert f"```\n{result.stderr.rstrip()}\n```" in README
 
 
+def test_the_state_shown_is_one_of_the_file_that_is_started(tmp_path, monkeypatch):
+    state = re.search(r"```json\n(.*?)```", README, re.DOTALL)[1]
+    monkeypatch.chdir(tmp_path)
+    Path("state.json").write_text(state, encoding="utf-8")
+    for words in ("new my_pendulum", "evaluate my_pendulum.yaml --state state.json --digits 50"):
+        result = CliRunner().invoke(commands, words.split())
+        assert result.exit_code == 0, result.stderr
+
+
 def test_base_parameters_are_those_shown():
     result = CliRunner().invoke(commands, ["regressor", str(SHIPPED["two_link_arm"])])
     assert f"```\n{result.stdout.rstrip()}\n```" in README

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import random
 import re
 import signal
 import subprocess
@@ -21,7 +22,7 @@ from scipy.special import ellipk
 from tools import library, tool
 
 from eomgen.cache_folder import VARIABLE, root
-from eomgen.numerics import cache
+from eomgen.numerics import adaptive, cache
 from eomgen.simulate_method import rounded_down
 
 
@@ -231,6 +232,61 @@ def test_files_are_written_and_never_overwritten(call):
         assert f"{file}: is in the way; choose another file, or --force" in said.errors
     simulate(call, "simple_pendulum", *words, "--force")
     assert {f: Path(f).read_bytes() for f in before} == before  # and the same bytes
+
+
+SWING = """eom: 1
+system: Oscillator of one second
+space: line
+gravity: 0
+parameters: {m: 1 kg, k: 39.47841760435743 N/m}
+coordinates: {x: m}
+bodies: {b: {mass: m, at: x}}
+springs: [{along: x, stiffness: k}]
+initial: {x: 1 m, x': 0 m/s}
+"""
+
+
+@pytest.mark.parametrize(
+    ("words", "times"),
+    [
+        (("--t-end", 1, "--output-step", 5), [0, 1]),
+        (("--t-end", 3, "--output-step", 1), [0, 1, 2, 3]),
+        (("--t-end", 2.5, "--output-step", 1), [0, 1, 2, 2.5]),
+        (("--t-end", 3, "--output-step", 1, "--step", 0.001), [0, 1, 2, 3]),
+        (("--t-end", 2.5, "--output-step", 1, "--step", 0.001), [0, 1, 2, 2.5]),
+        (("--t-end", 2.5004, "--output-step", 1, "--step", 0.001), [0, 1, 2, 2.5004]),
+        (("--t-end", 2, "--output-step", 5, "--step", 0.001), [0, 2]),
+    ],
+)
+def test_rows_a_period_apart_do_not_hide_the_energy(call, words, times):
+    said = call("simulate", "-", *words, stdin=SWING)
+    assert (said.code, "W-ENERGY" in said.errors) == (0, False), said.errors
+    rows = list(csv.reader(StringIO(said.output)))[1:]
+    assert [float(row[0]) for row in rows] == pytest.approx(times, abs=1e-12)
+
+
+def test_power_of_rounding_alone_is_not_halved_for():
+    """A force that moves a bead on a turning wire does no work on Jacobi's energy, to rounding."""
+    chance, seen = random.Random(1), []
+
+    def flow(t, state):
+        seen.append(t)
+        return np.array([3.0, 1e-17 * chance.uniform(-1, 1)])
+
+    assert abs(adaptive.work_of(flow, 0.0, 0.1, lambda t: np.zeros(2))) < 1e-17
+    assert len(seen) == 12  # the whole and its halves
+
+
+def test_one_result_is_not_written_over_another(call):
+    words = ("--t-end", 1, "-o", "d.csv", "--plot", "./d.csv", "--force")
+    said = simulate(call, "simple_pendulum", *words, code=2)
+    assert "d.csv: is asked for twice; give each result its own file" in said.errors
+    assert not Path("d.csv").exists()
+
+
+def test_an_input_that_a_scene_has_not_is_said_so(call):
+    said = simulate(call, "simple_pendulum", "--input", "F=1", code=2)
+    assert "inputs: unknown name 'F'; there are none" in said.errors
 
 
 @pytest.mark.slow

@@ -160,6 +160,21 @@ def test_number_before_a_name_is_not_taken_for_a_unit():
     assert caught.value.faults[0].message == "missing operator before 'm'"
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "hint"),
+    [
+        ("mass: m", "mass: 2 m", "a unit stands behind a number alone: 2 kg, 2 m^-1"),
+        ("m: 2 kg", "m: 2 1/m", "a unit stands behind a number alone: 2 kg, 2 m^-1"),
+        ("mass: m", 'mass: "0,5"', "decimals take a point: 9.81"),
+        ("m: 2 kg", "m: 0,2 kg", "decimals take a point"),
+    ],
+)
+def test_numbers_as_others_write_them_are_answered_with_ours(old, new, hint):
+    with pytest.raises(SpecError) as caught:
+        read(BASE.replace(old, new))
+    assert caught.value.faults[0].hint.endswith(hint)
+
+
 def test_turns_are_read_left_to_right():
     turned = SOLID.replace("at: P", "at: P, turn: [[-x, phi], [[1, 2, 2], 2*phi], [z, pi/2]]")
     (phi,) = real("phi")

@@ -16,6 +16,7 @@ SCIPY = {"dop853": "DOP853", "lsoda": "LSODA", "radau": "Radau"}
 SUNDIALS = "cvode"
 NAMES = (*SCIPY, SUNDIALS)
 HALVINGS, AGREED = 6, 1e-9  # of a step whose work is integrated
+ROUNDING = float(np.finfo(float).eps)
 IMPLICIT = ("lsoda", "radau")
 Project = Callable[[float, Array], tuple[Array, int]]
 Dense = Callable[[float], Array]
@@ -139,22 +140,26 @@ def work_of(flow: Function | None, start: float, end: float, dense: Dense) -> fl
 def _halved(
     flow: Function, dense: Dense, span: tuple[float, float], whole: tuple[float, float], left: int
 ) -> float:
-    """The integral over a span; whole: it by one rule, and that of its size."""
+    """The integral over a span; whole: it by one rule, and how far halves may be off it."""
     middle = (span[0] + span[1]) / 2
     halves = ((span[0], middle), (middle, span[1]))
     found = [_gauss(flow, dense, *half) for half in halves]
-    total, size = found[0][0] + found[1][0], found[0][1] + found[1][1]
-    if not abs(total - whole[0]) > AGREED * size or left == 0:
+    total, near = found[0][0] + found[1][0], found[0][1] + found[1][1]
+    if not abs(total - whole[0]) > near or left == 0:
         return total
     pairs = zip(halves, found, strict=True)
     return sum(_halved(flow, dense, half, one, left - 1) for half, one in pairs)
 
 
 def _gauss(flow: Function, dense: Dense, start: float, end: float) -> tuple[float, float]:
-    """The integrals of the power and of its size by one rule."""
+    """The integral of the power by one rule, and how near to it is near enough.
+
+    Power that is zero but for rounding agrees with nothing: the energy's own rounding bounds it.
+    """
     half, middle = (end - start) / 2, (end + start) / 2
-    powers = np.array([flow(t, dense(t))[1] for t in middle + half * NODES])
-    return float(half * np.dot(WEIGHTS, powers)), float(half * np.dot(WEIGHTS, np.abs(powers)))
+    energies, powers = np.array([flow(t, dense(t)) for t in middle + half * NODES]).T
+    near = AGREED * half * np.dot(WEIGHTS, np.abs(powers)) + ROUNDING * np.max(np.abs(energies))
+    return float(half * np.dot(WEIGHTS, powers)), float(near)
 
 
 def pieces(

@@ -15,8 +15,9 @@ from eomgen.render.notes_page import Page
 
 Row = Mapping[str, str]
 
-COHERENT = frozenset(
-    ("", "kg", "m", "s", "A", "K", "rad", "Hz", "N", "Nm", "J", "W", "Pa", "V", "C", "F", "H")
+COHERENT = frozenset(  # each counts 1 in SI
+    ("kg", "m", "s", "A", "K", "rad", "Hz", "N", "Nm", "J", "W", "Pa", "V", "C", "F", "H", "T")
+    + ("Ohm", "\u03a9")
 )
 LONGEST = 12  # figures of a decimal number that is written out
 

@@ -180,10 +180,13 @@ class _Parser:
             return
         if token.kind in ("name", "number") or token.text in ("(", "["):
             hint = "write '*' for a product"
+            if self.tokens[self.index - 1].kind == "number":
+                hint += "; a unit stands behind a number alone: 2 kg, 2 m^-1"
             raise self.mistake(token, f"missing operator before {shown(token.text)}", hint=hint)
         if token.text in SIGNS:
             raise self.mistake(token, f"'{token.text}' has no place in this formula", "E205")
-        raise self.mistake(token, f"{shown(token.text)} is one too many")
+        hint = "decimals take a point: 9.81" if token.text == "," else ""
+        raise self.mistake(token, f"{shown(token.text)} is one too many", hint=hint)
 
     def sum(self, depth: int) -> Tree:
         """A sum of products."""

@@ -79,6 +79,8 @@ def check_spelling(key: Scalar) -> None:
         raise Mistake(key, "E304", f"'{name}' is a word of the language", "choose another name")
     if not NAME.fullmatch(name) or len(name) > MOST_CHARACTERS:
         hint = "letters, digits and '_', a letter first"
+        if name[:1].isdigit():  # {m: 0,1 kg} reads as {m: 0, 1 kg: }
+            hint += "; decimals take a point"
         raise Mistake(key, "E304", f"{shown(name)} is not a name", hint)
 
 
