@@ -1,5 +1,6 @@
 """Names that C, Python or our own templates have for something else: renaming changes no number."""
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -75,3 +76,10 @@ def test_python_computes_the_same(kind, generate):
         ])  # fmt: skip
     for plain, awkward in zip(*results, strict=True):
         np.testing.assert_array_equal(plain, awkward)
+
+
+@pytest.mark.parametrize("name", ["math", "struct", "numbers", "time", "numpy"])
+def test_a_module_is_not_mistaken_for_a_library(name, call):
+    Path(f"{name}.yaml").write_text(renamed(PLAIN))
+    assert call("generate", f"{name}.yaml", "-t", "python").output == f"{name}_.py\n"
+    run(sys.executable, "-c", f"import {name}_; {name}_.energy(0, [0, 0, 0, 0], [0])")
