@@ -32,7 +32,7 @@ from eomgen.mechanics.recursive.engine import Engine
 from eomgen.mechanics.recursive.lumping import lumped
 from eomgen.mechanics.recursive.records import NoTree, Tree
 from eomgen.mechanics.vectors import Matrix, Vector, dot
-from eomgen.model import Model
+from eomgen.model import Coordinate, Model
 from eomgen.program import Function, Program, Read
 
 LARGEST_MATRIX = 32  # equations; above, the n^2 entries of M are written only if asked for
@@ -48,6 +48,7 @@ class Machine:
     pivots: ldl.Pivots = ()  # that the rates divide by
     baumgarte: Fraction = Fraction(0)  # alpha [1/s] of stabilised rows; zero: none
     weight: Fraction = Fraction(0)  # w, where M + w J'J has to stand for a singular M
+    eliminated: tuple[Coordinate, ...] = ()  # of the spec, bound to formulas in the others
 
     @property
     def model(self) -> Model:
@@ -212,7 +213,8 @@ class Machine:
     @cached_property
     def outputs(self) -> tuple[Node, ...]:
         """The author's own formulas."""
-        return self.outputs_with(self.motion if motions.holds_motion(self.model) else {})
+        holds_motion = motions.holds_motion(self.model, self.eliminated)
+        return self.outputs_with(self.motion if holds_motion else {})
 
     def outputs_with(self, motion: Mapping[sp.Symbol, Node]) -> tuple[Node, ...]:
         """The author's own formulas over these q'' and u'; none where no formula holds one."""
@@ -222,9 +224,16 @@ class Machine:
     @cached_property
     def motion(self) -> dict[sp.Symbol, Node]:
         """q'' and u' on the motion, by their symbols."""
-        pairs = zip(self.model.coordinates, self.accelerations, strict=True)
+        pairs = list(zip(self.model.coordinates, self.accelerations, strict=True))
         own = zip(self.model.speeds, self.solution[0], strict=bool(self.model.speeds))
-        return {s.rate: a for s, a in own} | {c.acceleration: a for c, a in pairs}
+        found = {s.rate: a for s, a in own} | {c.acceleration: a for c, a in pairs}
+        if not self.eliminated:
+            return found
+        # d/dt of the rates that follow from the others
+        algebra = self.kinematics.algebra
+        flow = {**self.kinematics.flow.derivatives, **{c.rate: a for c, a in pairs}}
+        follow = {c.acceleration: algebra.along(algebra.of(c.rate), flow) for c in self.eliminated}
+        return found | follow
 
 
 def solved(

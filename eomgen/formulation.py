@@ -222,7 +222,9 @@ def _reduced(scene: Linked, found: nullspace.Reduced) -> tuple[Machine, Block]:
     bindings = found.kinematics.algebra.bindings
     leaves = {n: values.get(s, 0.0) for s, n in bindings.items() if isinstance(n.datum, Read)}
     block = compile_watch.block(found.determinant, found.pivots, leaves)
-    return Machine(found.kinematics, (), found.pivots), block
+    left = found.kinematics.model.coordinates
+    eliminated = tuple(c for c in scene.model.coordinates if c not in left)
+    return Machine(found.kinematics, (), found.pivots, eliminated=eliminated), block
 
 
 def _dependent_columns(scene: Linked, matrices: Sequence[Matrix]) -> list[int]:

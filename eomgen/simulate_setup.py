@@ -204,7 +204,10 @@ def _read(study: Study, text: str) -> State:
 def _remedy(model: Model) -> str:
     names = ", ".join(f"--input {i.name}=0" for i in model.inputs)
     inputs = f", inputs with {names}" if names else ""
-    return f"\ngive the state with --state FILE or `initial` in the spec{inputs}"
+    return (
+        "\ngive the state with --state FILE (of `simulate`, `stability` and `chart`) or `initial` "
+        f"in the spec{inputs}, parameters a value in either"
+    )
 
 
 def _with_inputs(text: str, inputs: Mapping[str, str]) -> str:

@@ -90,6 +90,14 @@ def test_an_option_of_c_needs_c(generate, option):
     assert said.errors.endswith(f"error: {option} is about C, which is not written; add -t c\n")
 
 
+def test_stability_names_what_a_start_lacks_and_where_it_can_stand(call):
+    spec = SHIPPED["simple_pendulum"].read_text()
+    Path("open.yaml").write_text(re.sub(r"^initial:.*\n", "", spec, flags=re.M))
+    said = call("generate", "open.yaml", "-t", "c", "--with-stability")
+    assert (said.code, said.output) == (2, "")
+    assert "--state FILE (of `simulate`, `stability` and `chart`) or `initial`" in said.errors
+
+
 def values_of(name):
     return [float(p.value) for p in program_of(name).parameters]
 

@@ -253,6 +253,16 @@ def test_a_mistake_in_a_template_has_its_place_and_writes_nothing(generate):
     assert not Path("out").exists()
 
 
+def test_a_template_that_is_no_text_is_named(generate):
+    override("c/model.h.j2", "")
+    Path("mine/c/model.h.j2").write_bytes(b"/* caf\xe9 */")
+    said = generate("-o", "out", "--templates", "mine")
+    assert (said.code, said.output) == (2, "")
+    place = Path("mine/c/model.h.j2")
+    assert said.errors == f"eomgen: {place}: byte 7 is not UTF-8; save the file as UTF-8\n"
+    assert not Path("out").exists()
+
+
 def test_a_folder_of_templates_must_be_there(generate):
     said = generate("-o", "out", "--templates", "nowhere")
     assert (said.code, said.output) == (2, "")

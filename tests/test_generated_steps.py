@@ -1,6 +1,7 @@
 """The integrators that the command line writes: strictly compiled, and their header is true."""
 
 import re
+import subprocess
 
 import pytest
 from commandline import eomgen, run, together
@@ -30,6 +31,15 @@ def test_no_warning_in_any_build(name, more, tmp_path):
         (tool(compiler), *WARNINGS, "-O2", *define[real], "-c", source, "-o", tmp_path / f"{i}.o")
         for i, (compiler, real) in enumerate(BUILDS)
     )
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_compensated_steps_refuse_arithmetic_that_undoes_them(compiler, tmp_path):
+    source = written("simple_pendulum", tmp_path, "--compensated")
+    command = [tool(compiler), "-std=c99", "-O2", "-ffast-math", "-c", source]
+    said = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert said.returncode != 0
+    assert "compile without -ffast-math" in said.stderr
 
 
 @pytest.mark.slow

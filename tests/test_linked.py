@@ -260,3 +260,17 @@ def test_a_block_that_turns_singular_is_refused():
     text = text.replace("guess: {y: -0.4 m}}", "guess: {y: -0.4 m}}\nrange: {x: [-0.5 m, 0.5 m]}")
     with pytest.raises(UsageError, match="W-PIVOT: x cannot stay dependent"):
         study_linked.of_model(read(text, "a.yaml"), Wanted("nullspace"))
+
+
+def test_an_output_with_the_acceleration_of_an_eliminated_coordinate():
+    text = PENDULUM + "outputs: {fall: y'', sum: x'' + y''}\n"
+    program = of_text(text, "pendulum.yaml", Wanted("minimal")).program
+    x, v, known = 0.3, 0.8, [float(p.value) for p in program.parameters]
+    given = {"time": [0.0], "state": [x, v], "inputs": [], "parameters": known}
+    (slope,) = run(program.function("accelerations"), given, FLOAT)
+    fall, total = run(program.function("outputs"), given, FLOAT)
+    # x^2 + y^2 = l^2, differentiated twice
+    y = -((0.5**2 - x**2) ** 0.5)
+    expected = -(v**2 + x * slope + (x * v / y) ** 2) / y
+    assert fall == pytest.approx(expected, rel=1e-13)
+    assert total == pytest.approx(expected + slope, rel=1e-13)

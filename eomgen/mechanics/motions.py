@@ -83,7 +83,8 @@ def normalised(model: Model, algebra: Algebra[S]) -> tuple[S, ...]:
     return tuple(found[c.symbol] for c in model.coordinates)
 
 
-def holds_motion(model: Model) -> bool:
-    """Whether an output mentions q'' or u'."""
-    held = {c.acceleration for c in model.coordinates} | {s.rate for s in model.speeds}
+def holds_motion(model: Model, eliminated: tuple[Coordinate, ...] = ()) -> bool:
+    """Whether an output mentions q'' or u', those of eliminated coordinates too."""
+    held = {c.acceleration for c in model.coordinates + eliminated}
+    held |= {s.rate for s in model.speeds}
     return any(o.formula.free_symbols & held for o in model.outputs)

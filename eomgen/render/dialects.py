@@ -41,7 +41,17 @@ typeid typename typeof typeof_unqual using virtual wchar_t xor xor_eq near far h
 _MACROS = _words("""
 I NULL EOF NAN INFINITY HUGE HUGE_VAL DOMAIN SING OVERFLOW UNDERFLOW PLOSS TLOSS
 complex imaginary errno assert linux unix i386 stdin stdout stderr offsetof
+HUGE_VALF HUGE_VALL MAXFLOAT SNAN FP_NAN FP_INFINITE FP_ZERO FP_SUBNORMAL FP_NORMAL DECIMAL_DIG
+M_E M_LOG2E M_LOG10E M_LN2 M_LN10 M_PI M_PI_2 M_PI_4 M_1_PI M_2_PI M_2_SQRTPI M_SQRT2 M_SQRT1_2
+SIZE_MAX PTRDIFF_MAX PTRDIFF_MIN INTMAX_MAX INTMAX_MIN UINTMAX_MAX INTPTR_MAX INTPTR_MIN UINTPTR_MAX
 """)
+_RANGES = _words("MAX MIN EPSILON DIG MANT_DIG MAX_EXP MIN_EXP MAX_10_EXP MIN_10_EXP RADIX ROUNDS")
+_LIMITS = {f"{kind}_{which}" for kind in ("FLT", "DBL", "LDBL") for which in _RANGES} | {
+    f"{kind}{size}_{end}" for kind in ("INT", "UINT") for size in (8, 16, 32, 64)
+    for end in ("MAX", "MIN")
+}  # fmt: skip
+# those of our templates that are no calls: they would replace a member too
+_OWN_MACROS = _words("EPSILON LANES ALIGNED SIDE_BY_SIDE APART INLINED WAVE_RANGE SIGN_BIT PIECE")
 _MATH = _words("""
 acos asin atan atan2 cos sin tan cosh sinh tanh acosh asinh atanh exp exp2 exp10 expm1 frexp ilogb
 ldexp log log10 log1p log2 logb modf scalb scalbn scalbln cbrt fabs hypot pow pow10 sqrt erf erfc
@@ -49,7 +59,7 @@ gamma lgamma tgamma ceil floor nearbyint rint lrint llrint round lround llround 
 remainder remquo copysign nan nextafter nexttoward fdim fmax fmin fma j0 j1 jn y0 y1 yn signgam
 significand finite isnan isinf isfinite isnormal signbit fpclassify abs div index
 """)
-_C_MEMBERS = _KEYWORDS | _MACROS
+_C_MEMBERS = _KEYWORDS | _MACROS | _LIMITS | _OWN_MACROS
 
 C_FUNCTIONS = {  # operator -> function of <math.h>; its macro is the name in capitals
     "sin": "sin", "cos": "cos", "tan": "tan", "asin": "asin", "acos": "acos", "atan": "atan",
@@ -62,10 +72,9 @@ LONGEST = 1000
 ONCE = 300
 REPEATED = 200  # a call takes a hundredth of the time of so many
 _OWN = _words("""
-t state accelerations inputs p m work result waves lane bad REAL EPSILON PIVOT LANES NOT_ABOVE
-ALIGNED SIDE_BY_SIDE APART INLINED WAVE_RANGE SIGN_BIT bits bits_of real_of reduced
-sine_and_cosine sine cosine
-lane_waves lane_sine lane_cosine gather scatter gather_last scatter_last pick PIECE
+t state accelerations inputs p m work result waves lane bad REAL PIVOT NOT_ABOVE
+bits bits_of real_of reduced sine_and_cosine sine cosine
+lane_waves lane_sine lane_cosine gather scatter gather_last scatter_last pick
 """)
 C = Dialect(
     number="REAL({})",
@@ -90,7 +99,7 @@ PYTHON = Dialect(
         "min": "np.fmin", "max": "np.fmax",
     },
     reserved=frozenset(keyword.kwlist)
-    | {"np", "t", "state", "inputs", "parameters", "model"}
+    | {"np", "t", "state", "accelerations", "inputs", "parameters", "model", "Model", "float"}
     | {"l", "O", "I"},  # hard to tell from 1 and 0: linters reject them (E741)
     reserved_members=frozenset(),  # keys of a dictionary
 )  # fmt: skip

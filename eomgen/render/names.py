@@ -1,6 +1,7 @@
 """Names that a target accepts: escaped where it reserves them, each once, by declaration."""
 
 import keyword
+import sys
 from collections.abc import Iterable
 
 
@@ -37,5 +38,5 @@ def prefix(name: str) -> str:
 
 
 def module(name: str) -> str:
-    """The name of a program's Python module; one that it imports itself would hide that."""
-    return escaped([name], [*keyword.kwlist, "numpy"])[0]
+    """The name of a program's Python module: none that Python or NumPy would take for their own."""
+    return escaped([name], [*keyword.kwlist, "numpy", *sys.stdlib_module_names])[0]

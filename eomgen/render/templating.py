@@ -98,6 +98,20 @@ FILTERS = {
 }
 
 
+class _Folder(jinja2.FileSystemLoader):
+    """A user's templates."""
+
+    def get_source(self, environment: jinja2.Environment, template: str) -> Any:
+        """The text, its file and whether that has changed. Raises UsageError if it is no text."""
+        try:
+            return super().get_source(environment, template)
+        except UnicodeDecodeError as error:
+            place = Path(self.searchpath[0], template)
+            raise UsageError(
+                f"{place}: byte {error.start + 1} is not UTF-8; save the file as UTF-8"
+            ) from error
+
+
 def environment(user_folder: Path | None = None) -> jinja2.Environment:
     """Our templates, behind those of `user_folder`; ours also under the prefix `builtin/`."""
     if user_folder is not None and not user_folder.is_dir():
@@ -113,7 +127,7 @@ def _shipped() -> jinja2.Environment:
 
 def _made(user_folder: Path | None) -> jinja2.Environment:
     ours = jinja2.FileSystemLoader(shipped("templates"))
-    folders = [jinja2.FileSystemLoader(user_folder)] if user_folder else []
+    folders = [_Folder(user_folder)] if user_folder else []
     made = _Sandbox(
         loader=jinja2.ChoiceLoader([jinja2.PrefixLoader({"builtin": ours}), *folders, ours]),
         undefined=jinja2.StrictUndefined,
@@ -131,6 +145,8 @@ def fill(templates: jinja2.Environment, template: str, context: dict[str, Any]) 
     """The text of `template`. Raises UsageError where a user's template is wrong."""
     try:
         return templates.get_template(template).render(context)
+    except UsageError:
+        raise
     except Exception as error:  # of any kind: a template can divide by zero
         place = _place_of_user(error)
         if place is None:
