@@ -22,6 +22,7 @@ from eomgen.checks import (
     recursion,
     samples,
 )
+from eomgen.errors import UsageError
 from eomgen.mechanics import lagrange, speeds
 from eomgen.mechanics.equations import Derivation
 from eomgen.model import Model
@@ -152,7 +153,7 @@ def _closed(machine: compile.Machine, wanted: Wanted) -> Derivation | None:
     """The closed form; None where the recursion can be proven instead and nobody reads notes.
 
     Raises:
-        TooLarge: it was asked for, or there is no recursion.
+        UsageError: it is too large, and was asked for, or there is no recursion.
     """
     model = machine.model
     needed = wanted.notes or machine.engine is None
@@ -160,10 +161,17 @@ def _closed(machine: compile.Machine, wanted: Wanted) -> Derivation | None:
         return None
     try:
         return lagrange.derive(model)
-    except TooLarge:
+    except TooLarge as fault:
         if needed:
-            raise
+            raise UsageError(f"{fault}; {_need(machine)}") from fault
         return None
+
+
+def _need(machine: compile.Machine) -> str:
+    """Why a closed form cannot be done without, or how it can."""
+    if machine.engine is None:
+        return f"no recursion takes its place: {machine.tree}"
+    return "only notes need it, and `generate -t c -t python` writes none"
 
 
 def recursed(machine: compile.Machine) -> Report:

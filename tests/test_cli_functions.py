@@ -92,6 +92,8 @@ MISTAKES = (
     (("evaluate", ARM, "--functions", "regressor"),
      {**MOVING, "accelerations": [1, 2]}, "accelerations is not an object"),
     (("regressor", BAR), {}, "use --formulation minimal or nullspace"),
+    (("evaluate", BAR, "--functions", "base_regressor"), {"inputs": {"tau": 0}},
+     "with `generate` or `regressor`"),
     (("regressor", "no_such.yaml"), {}, "no_such.yaml"),
 )  # fmt: skip
 

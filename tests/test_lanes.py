@@ -141,24 +141,24 @@ def test_loops_are_short_where_the_lanes_would_wait_for_a_chain():
     assert longest_body(chain, 1000) in (OF_A_CHAIN, 1000)
 
 
-def system(names, scale, right):
+def system(names, scale, right, of="sin"):
     """A matrix with `scale` on its diagonal, at every state another one."""
     size = len(names)
     q = [Read("state", i) for i in range(size)]
-    rows = [[op("sin", q[j]) for j in range(i)] + [op("add", scale, q[i])] for i in range(size)]
+    rows = [[op(of, q[j]) for j in range(i)] + [op("add", scale, q[i])] for i in range(size)]
     return Solve(tuple(names), tuple(e for row in rows for e in row), tuple(right))
 
 
-def two_systems(size):
+def two_systems(size, of="sin"):
     """The second has what the first has given, and two right sides; values cross both."""
     q = [Read("state", i) for i in range(size)]
     first, second = [f"x{i}" for i in range(size)], [f"y{i}" for i in range(2 * size)]
     right = [*map(Value, reversed(first)), *(op("multiply", Value("a"), x) for x in q)]
     statements = (
         Assign("a", op("exp", q[0])),
-        system(first, n(9), [op("add", Value("a"), x) for x in q]),
+        system(first, n(9), [op("add", Value("a"), x) for x in q], of),
         Assign("b", op("multiply", Value("a"), Value("x1"))),
-        Solve(tuple(second), system(second[:size], n(7), ()).matrix, tuple(right)),
+        Solve(tuple(second), system(second[:size], n(7), (), of).matrix, tuple(right)),
         Assign("c", op("add", Value("b"), Value("y0"))),
     )
     results = (Value("c"), Value("a"), *map(Value, second[2:]), Value("x2"), q[1])
@@ -193,10 +193,11 @@ def test_what_is_too_large_for_a_stack_is_solved_lane_by_lane():
     assert divided(lowered(two_systems(size).functions[0]), 10**6, in_place=True) is None
 
 
+@pytest.mark.parametrize("of", [np.sin, np.abs])  # without a wave the helpers are fewer
 @pytest.mark.parametrize("style", [Style(batch=True), Style(batch=True, longest=2)])
-def test_systems_of_many_states_give_what_each_gives_alone(style):
+def test_systems_of_many_states_give_what_each_gives_alone(style, of):
     tool("cc")
-    made = two_systems(13)
+    made = two_systems(13, "sin" if of is np.sin else "abs")
     files = render(coded(made, style), TARGETS["c"], environment())
     assert "bad |= lanes_solve_13(" in files["two.c"]
     library = build(files, made)
@@ -210,13 +211,13 @@ def test_systems_of_many_states_give_what_each_gives_alone(style):
         if k == 7:
             assert np.isnan(found[:, k]).all()
             continue
-        np.testing.assert_allclose(found[:, k], _alone(state[:13]), rtol=1e-12)
+        np.testing.assert_allclose(found[:, k], _alone(state[:13], of), rtol=1e-12)
 
 
-def _alone(q):
+def _alone(q, of):
     """The results of `two_systems` by NumPy."""
     size = len(q)
-    lower = np.tril(np.tile(np.sin(q), (size, 1)), -1)
+    lower = np.tril(np.tile(of(q), (size, 1)), -1)
     full = lower + lower.T + np.diag(q)
     a = np.exp(q[0])
     x = np.linalg.solve(full + 9 * np.eye(size), a + q)

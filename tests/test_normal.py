@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eomgen.algebra.closed import ClosedForm, to_sympy
-from eomgen.algebra.normal import ONE, inverse, is_zero, linear_parts, number
+from eomgen.algebra.normal import ONE, Form, inverse, is_zero, linear_parts, number
+from eomgen.mechanics.quasi_velocities import evaluator
 
 x, y, z, t = sp.symbols("x y z t", real=True)
 a, m = sp.symbols("a m", positive=True)
@@ -141,3 +142,23 @@ def test_numbers_are_exact() -> None:
     third = number(algebra.ring, Fraction(1, 3))
     assert (third + third + third).terms == {ONE: 1}
     assert type((third * 3).terms[ONE]) is int
+
+
+def test_no_sum_is_copied_for_each_term_that_is_put_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Forms in the place of symbols: as many additions as there are terms, not their square."""
+    algebra = ClosedForm()
+    symbols = sp.symbols("c:300", real=True)
+    form = algebra.of(sp.Add(*(k * s * sp.cos(x) for k, s in enumerate(symbols, 1))))
+    put = evaluator(algebra, {s: algebra.of(s * y) for s in symbols} | {x: algebra.of(z)})
+    touched = 0
+    plain = Form.__add__
+
+    def counted(left: Form, right: Form) -> Form:
+        nonlocal touched
+        touched += len(left.terms)
+        return plain(left, right)
+
+    monkeypatch.setattr(Form, "__add__", counted)
+    found = put(form)
+    assert len(found.terms) == len(symbols)
+    assert touched <= 2 * len(symbols)

@@ -8,7 +8,7 @@ from scenes import EXTRA, SHIPPED, model_of
 from trees import BALL, PARALLEL, PLANAR, arm, spatial
 
 from eomgen import compile, study
-from eomgen.algebra import cost
+from eomgen.algebra import cost, normal
 from eomgen.algebra.arithmetic import NUMPY, evaluate
 from eomgen.algebra.ldl import SingularMassMatrix
 from eomgen.algebra.walk import below
@@ -252,6 +252,22 @@ def test_the_proof_of_a_large_scene_sees_a_forgotten_term(monkeypatch):
     monkeypatch.setattr(rigid, "wrench", forgetful)
     with pytest.raises(CheckError, match="differ"):
         study.of_text(arm(8), "chain.yaml")
+
+
+@pytest.mark.parametrize(
+    ("name", "command", "remedy"),
+    [
+        ("skew_arm", "derive", "only notes need it, and `generate -t c -t python` writes none"),
+        ("satellite", "check", "no recursion takes its place: its speeds are declared"),
+    ],
+)
+def test_a_closed_form_too_large_is_refused_with_its_reason(
+    monkeypatch, call, name, command, remedy
+):
+    monkeypatch.setattr(normal, "MOST_PRODUCTS", 10)
+    said = call(command, SHIPPED[name])
+    assert said.code == 2
+    assert remedy in said.errors
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ from eomgen.algebra.fixed import builders
 from eomgen.algebra.graph import Graph
 from eomgen.algebra.ldl import SingularMassMatrix
 from eomgen.algebra.lift import Target, lift
-from eomgen.algebra.specialise import specialised, with_values
+from eomgen.algebra.specialise import literals, specialised, with_values
 from eomgen.errors import UsageError
 from eomgen.interpreter import EXACT, mpmath_arithmetic
 from eomgen.program import (
@@ -277,3 +277,18 @@ def test_lifting_with_the_plain_operators_changes_nothing():
     lifted = lift(plain, Target(Graph(), BUILD, {}))
     assert len(lifted.results) == 4
     assert len(lifted.pivots) == 2
+
+
+def test_what_is_left_of_a_sum_that_is_zero_is_zero():
+    """sin^2(1) + cos^2(1) - 1 in sixty digits is some 1e-63; a number as small as that stays."""
+    graph = Graph()
+    one = graph.number(Fraction(1))
+    sine, cosine = graph.make("sin", (one,)), graph.make("cos", (one,))
+    square = graph.make(
+        "add", (graph.make("multiply", (sine, sine)), graph.make("multiply", (cosine, cosine)))
+    )
+    none = graph.make("subtract", (square, one))
+    small = graph.make("multiply", (sine, graph.number(Fraction(1, 10**70))))
+    found = literals([none, small])
+    assert found[none] == 0
+    assert float(found[small]) == pytest.approx(0.8414709848078965e-70, rel=1e-15)

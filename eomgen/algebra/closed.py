@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import partial, reduce
+from operator import add
 from typing import Any
 
 import sympy as sp
@@ -160,18 +161,22 @@ class Along:
 
 @dataclass
 class Evaluation:
-    """Evaluates closed forms over another algebra; `values` per symbol; pi is `apply("pi")`."""
+    """Evaluates closed forms over another algebra; `values` per symbol; pi is `apply("pi")`.
+
+    total: the sum of the terms of a form, where that is more than one addition after the other.
+    """
 
     values: Mapping[sp.Symbol, Any]
     number: Callable[[normal.Number], Any]
     apply: Callable[..., Any]
+    total: Callable[[list[Any]], Any] = partial(reduce, add)
     atoms: dict[tuple[int, int], Any] = field(default_factory=dict)
     waves: dict[tuple[Any, bool], Any] = field(default_factory=dict)
 
     def of(self, form: Form) -> Any:
         """The value of a form."""
         terms = [self._term(form.ring, key, c) for key, c in form.terms.items()]
-        return reduce(lambda a, b: a + b, terms) if terms else self.number(0)
+        return self.total(terms) if terms else self.number(0)
 
     def _term(self, ring: Ring, key: Key, c: normal.Number) -> Any:
         monomial, wave, sine = key

@@ -139,17 +139,25 @@ def literal(node: Node) -> Fraction:
 def literals(nodes: Sequence[Node]) -> dict[Node, Fraction]:
     """Values without arguments as numbers, all computed at once.
 
+    What is left of a sum that is zero shrinks with more digits: it is written as zero.
+
     Raises:
         UsageError: one is not real and finite.
     """
     try:
-        found = evaluate(nodes, {}, mpmath_arithmetic(LITERAL_DIGITS))
-        values = [_exact(value) for value in found]
+        rough, fine = (
+            [_exact(value) for value in evaluate(nodes, {}, mpmath_arithmetic(digits))]
+            for digits in (LITERAL_DIGITS, 2 * LITERAL_DIGITS)
+        )
     except (ValueError, ZeroDivisionError, OverflowError) as error:
         raise UsageError(
             f"a formula without coordinates is not real and finite: {error}; "
             "mend the formula or the values of its parameters"
         ) from error
+    least = Fraction(1, 10 ** (LITERAL_DIGITS // 2))
+    values = [
+        a if abs(b) > least * abs(a) else Fraction(0) for a, b in zip(rough, fine, strict=True)
+    ]
     pairs = zip(nodes, values, strict=True)
     return {a: a.datum if a.operator == "number" else value for a, value in pairs}
 

@@ -68,7 +68,7 @@ def of(motion: Motion) -> Base:
     if motion.machine.kept:
         raise UsageError(
             "base parameters need independent speeds, and this formulation has multipliers; "
-            "use --formulation minimal or nullspace"
+            "use --formulation minimal or nullspace, with `generate` or `regressor`"
         )
     found = motion.inertial
     count = 2 * len(found) // max(motion.size, 1) + SPARE

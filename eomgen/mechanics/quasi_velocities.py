@@ -8,7 +8,7 @@ from dataclasses import replace
 import sympy as sp
 
 from eomgen.algebra.closed import Evaluation
-from eomgen.algebra.normal import Form
+from eomgen.algebra.normal import Form, total
 from eomgen.algebra.scalar import Algebra
 from eomgen.mechanics import motions, speeds
 from eomgen.mechanics.equations import ConstraintRow, Equation
@@ -94,8 +94,12 @@ def _substitution(kinematics: Kinematics[Form], rates: tuple[Form, ...]) -> Call
 
 def evaluator(algebra: Algebra[Form], values: Mapping[sp.Symbol, Form]) -> Callable[[Form], Form]:
     """A function that puts closed forms in the place of symbols."""
+    ring = algebra.number(0).ring
     return Evaluation(
-        values, algebra.number, lambda name, *a: closed_function(algebra, name, *a)
+        values,
+        algebra.number,
+        lambda name, *a: closed_function(algebra, name, *a),
+        lambda terms: total(ring, terms),  # each added to the sum so far takes the square of time
     ).of
 
 
