@@ -111,6 +111,7 @@ class Formulation:
     why: str
     machine: Machine
     block: Block | None = None  # what gives the dependent speeds
+    near: str = ""  # a coordinate that has a dead point not far from where the scene was seen
 
 
 def linked(machine: Machine, report: Report) -> Linked:
@@ -140,7 +141,7 @@ def choose(scene: Linked, wanted: Wanted = AUTO) -> Formulation:
         return _multiplier_because(scene, f"{modes}, over all coordinates")
     if scene.asks_reactions:
         return _multiplier_because(scene, "reactions are asked for")
-    reduced = [f for f in available(scene) if f.name != "multiplier"]
+    reduced = [f for f in available(scene) if f.name != "multiplier" and not f.near]
     return reduced[0] if reduced else _multiplier_because(scene, _why_not(scene))
 
 
@@ -269,7 +270,12 @@ def _minimal(scene: Linked) -> Formulation:
         chosen = minimal_graph.choose(found, _values(scene, scene.report.initial))
     except ValueError as error:
         raise UsageError(f"minimal: {error}") from error
-    _refuse_dead_points(scene, chosen)
+    if dead := _dead_point(scene, chosen, reach=0):
+        raise UsageError(
+            f"minimal: W-DEAD: {dead} has a dead point inside `range`; "
+            "narrow the range or use nullspace"
+        )
+    near = _dead_point(scene, chosen, reach=1)
     names = ", ".join(c.coordinate.name for c in chosen)
     rooted = [c for c in chosen if c.discriminant is not None]
     branches = ", ".join(f"{c.coordinate.name}: {minimal.BRANCHES[c.branch]:+d}" for c in rooted)
@@ -277,7 +283,7 @@ def _minimal(scene: Linked) -> Formulation:
     values = _values(scene, scene.report.initial)
     reduced = minimal_graph.derive(scene.model, chosen, scene.machine.kept, values)
     why = f"{names} eliminated in closed form{tail}"
-    return Formulation("minimal", why, *_reduced(scene, reduced))
+    return Formulation("minimal", why, *_reduced(scene, reduced), near)
 
 
 def _eliminations(scene: Linked) -> tuple[Elimination, ...]:
@@ -302,15 +308,15 @@ def _eliminations(scene: Linked) -> tuple[Elimination, ...]:
     return found
 
 
-def _refuse_dead_points(scene: Linked, chosen: Sequence[Chosen]) -> None:
-    """A formula whose root nearly vanishes somewhere in the range is not safe."""
+def _dead_point(scene: Linked, chosen: Sequence[Chosen], reach: int) -> str:
+    """The coordinate whose root nearly vanishes in a span: its formula is not safe; else empty."""
     chance = random.Random(scene.model.name)
     formulas = [(c.coordinate, measure(c.formula)) for c in chosen]
     limits = {
         c.coordinate.name: measure(c.discriminant) for c in chosen if c.discriminant is not None
     }
     sizes: dict[str, list[float]] = {name: [] for name in limits}
-    start, spans = _values(scene, scene.report.initial), _spans(scene)
+    start, spans = _values(scene, scene.report.initial), _spans(scene, reach)
     for _ in range(DEAD_POINT_SAMPLES):
         values = start | {symbol: chance.uniform(*span) for symbol, span in spans.items()}
         for coordinate, formula in formulas:
@@ -319,26 +325,31 @@ def _refuse_dead_points(scene: Linked, chosen: Sequence[Chosen]) -> None:
                 if sizes[coordinate.name][-1] < 0:
                     break
             values[coordinate.symbol] = formula(values)
-    for name, seen in sizes.items():
-        if min(seen) < LEAST_DISCRIMINANT * max(abs(s) for s in seen):
-            raise UsageError(
-                f"minimal: W-DEAD: {name} has a dead point inside `range`; "
-                "narrow the range or use nullspace"
-            )
+    unsafe = (
+        name
+        for name, seen in sizes.items()
+        if min(seen) < LEAST_DISCRIMINANT * max(abs(s) for s in seen)
+    )
+    return next(unsafe, "")
 
 
-def _spans(scene: Linked) -> dict[Any, tuple[float, float]]:
-    """Where independent coordinates are: in the declared range, else between sampled states."""
+def _spans(scene: Linked, reach: int) -> dict[Any, tuple[float, float]]:
+    """Where independent coordinates are: in the declared range, else between sampled states.
+
+    reach: how many times as far again what has no range may go to either side.
+    """
     names = [c.name for c in scene.model.coordinates]
     states = [scene.report.initial.state, *(s.state for s in scene.report.states)]
     found: dict[Any, tuple[float, float]] = {}
     for name in scene.report.freedom.basis.independent:
         j = names.index(name)
-        ends: Sequence[Any] = [s.coordinates[j] for s in states]
+        ends = [float(s.coordinates[j]) for s in states]
+        further = reach * (max(ends) - min(ends))
         if name in scene.model.range:
-            parameters = states[0].parameters
-            ends = [linkage.constant(scene.links, v, parameters) for v in scene.model.range[name]]
-        found[scene.model.coordinates[j].symbol] = float(min(ends)), float(max(ends))
+            parameters, further = states[0].parameters, 0.0
+            given = scene.model.range[name]
+            ends = [float(linkage.constant(scene.links, v, parameters)) for v in given]
+        found[scene.model.coordinates[j].symbol] = min(ends) - further, max(ends) + further
     return found
 
 
