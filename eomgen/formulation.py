@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -27,7 +28,7 @@ from eomgen.errors import UsageError
 from eomgen.mechanics import constraints, lagrange, minimal, minimal_graph, nullspace
 from eomgen.mechanics.minimal import Elimination, Residual
 from eomgen.mechanics.minimal_graph import Chosen, measure
-from eomgen.model import TIME, Model, Speed
+from eomgen.model import TIME, Coordinate, Model, Speed
 from eomgen.program import Read
 from eomgen.wanted import AUTO, Wanted
 
@@ -35,6 +36,9 @@ DEAD_POINT_SAMPLES = 200
 LEAST_DISCRIMINANT = 0.05  # of its largest value over the sampled states
 
 DUST = 1e-40  # below the round-off of 50 digits
+Values = dict[Any, float]  # of the symbols of a configuration
+Measure = Callable[[Values], float]
+Measured = tuple[Coordinate, Measure, Measure | None]
 
 
 @dataclass(frozen=True)
@@ -265,22 +269,22 @@ def _minimal(scene: Linked) -> Formulation:
         raise UsageError("minimal: the declared speeds move all coordinates; use nullspace")
     if any(c.kind == "nonholonomic" for c in scene.model.constraints):
         raise UsageError("minimal: a nonholonomic constraint eliminates no coordinate")
-    found = _eliminations(scene)
+    found, values = _eliminations(scene), _values(scene, scene.report.initial)
     try:
-        chosen = minimal_graph.choose(found, _values(scene, scene.report.initial))
+        chosen = minimal_graph.choose(found, values)
     except ValueError as error:
         raise UsageError(f"minimal: {error}") from error
-    if dead := _dead_point(scene, chosen, reach=0):
+    measured = _measured(chosen)
+    if dead := _dead_point(scene, measured, values, reach=0):
         raise UsageError(
             f"minimal: W-DEAD: {dead} has a dead point inside `range`; "
             "narrow the range or use nullspace"
         )
-    near = _dead_point(scene, chosen, reach=1)
+    near = _dead_point(scene, measured, values, reach=1)
     names = ", ".join(c.coordinate.name for c in chosen)
     rooted = [c for c in chosen if c.discriminant is not None]
     branches = ", ".join(f"{c.coordinate.name}: {minimal.BRANCHES[c.branch]:+d}" for c in rooted)
     tail = f", branch {branches}" if branches else ""
-    values = _values(scene, scene.report.initial)
     reduced = minimal_graph.derive(scene.model, chosen, scene.machine.kept, values)
     why = f"{names} eliminated in closed form{tail}"
     return Formulation("minimal", why, *_reduced(scene, reduced), near)
@@ -308,21 +312,29 @@ def _eliminations(scene: Linked) -> tuple[Elimination, ...]:
     return found
 
 
-def _dead_point(scene: Linked, chosen: Sequence[Chosen], reach: int) -> str:
+def _measured(chosen: Sequence[Chosen]) -> list[Measured]:
+    """The eliminated coordinates with their formulas, and what stands under a root of these."""
+    return [
+        (
+            c.coordinate,
+            measure(c.formula),
+            None if c.discriminant is None else measure(c.discriminant),
+        )
+        for c in chosen
+    ]
+
+
+def _dead_point(scene: Linked, measured: Sequence[Measured], start: Values, reach: int) -> str:
     """The coordinate whose root nearly vanishes in a span: its formula is not safe; else empty."""
-    chance = random.Random(scene.model.name)
-    formulas = [(c.coordinate, measure(c.formula)) for c in chosen]
-    limits = {
-        c.coordinate.name: measure(c.discriminant) for c in chosen if c.discriminant is not None
-    }
-    sizes: dict[str, list[float]] = {name: [] for name in limits}
-    start, spans = _values(scene, scene.report.initial), _spans(scene, reach)
+    chance, spans = random.Random(scene.model.name), _spans(scene, reach)
+    sizes: dict[str, list[float]] = defaultdict(list)
     for _ in range(DEAD_POINT_SAMPLES):
         values = start | {symbol: chance.uniform(*span) for symbol, span in spans.items()}
-        for coordinate, formula in formulas:
-            if coordinate.name in limits:
-                sizes[coordinate.name].append(limits[coordinate.name](values))
-                if sizes[coordinate.name][-1] < 0:
+        for coordinate, formula, discriminant in measured:
+            if discriminant is not None:
+                size = discriminant(values)
+                sizes[coordinate.name].append(size)
+                if size < 0:
                     break
             values[coordinate.symbol] = formula(values)
     unsafe = (
@@ -353,7 +365,7 @@ def _spans(scene: Linked, reach: int) -> dict[Any, tuple[float, float]]:
     return found
 
 
-def _values(scene: Linked, state: Admissible) -> dict[Any, float]:
+def _values(scene: Linked, state: Admissible) -> Values:
     """Values of the symbols of a configuration."""
     bindings = scene.machine.kinematics.algebra.bindings
     leaves = {

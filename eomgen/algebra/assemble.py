@@ -59,7 +59,7 @@ def assemble(
     if prod(shape) != len(results):
         raise ValueError(f"{name} has {len(results)} results, its shape is {shape}")
     nodes = swept(results)
-    known = frozenset(nodes) if pivots else frozenset[Node]()
+    known = frozenset(nodes)
     checks = tuple(pair for pair in pivots if not known.isdisjoint(_divisors(pair[0])))
     if checks:
         nodes = swept(chain(results, *checks))
@@ -90,7 +90,7 @@ def written(
 
     Nodes of `given` are not computed but read as it says; `names` have been given before.
     """
-    wanted = [*results, *(node for pair in pivots for node in pair)]
+    wanted = chain(results, *pivots)
     nodes = below(wanted, given.__contains__) if given else swept(wanted)
     return _stated(head, (results, pivots), nodes, given, names)
 
